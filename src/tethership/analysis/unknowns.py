@@ -1,0 +1,84 @@
+"""Which quantities a trim looks for, by name. Depends on: system.state, errors."""
+
+import difflib
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from tethership.errors import ConfigError
+from tethership.system.state import STATE_NAMES
+
+STATE_SCALES = (1.0, 1.0, 1.0, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 1.0, 1.0, 1.0)
+"""Unit in which each state is looked for [m/s, rad/s, rad, m]."""
+
+
+class Unknowns(eqx.Module):
+    """A choice among all quantities (12 states, throttles, deflections).
+
+    Attributes
+    ----------
+    index : tuple of int
+        Places of the chosen ones.
+    scale : Float[Array, "unknowns"]
+        Unit of each, so that a step of 1 is moderate for all.
+    effort : Float[Array, "unknowns"]
+        1 for throttles and deflections, whose norm is kept least, 0 for states.
+    """
+
+    index: tuple[int, ...] = eqx.field(static=True)
+    scale: Float[Array, "unknowns"]
+    effort: Float[Array, "unknowns"]
+
+    def taken(self, everything: Float[Array, "n"]) -> Float[Array, "unknowns"]:
+        """Return the chosen quantities in their units."""
+        return everything[np.array(self.index, dtype=int)] / self.scale
+
+    def placed(
+        self, everything: Float[Array, "n"], values: Float[Array, "unknowns"]
+    ) -> Float[Array, "n"]:
+        """Return all quantities with the chosen ones replaced."""
+        return everything.at[np.array(self.index, dtype=int)].set(values * self.scale)
+
+
+def find_unknowns(
+    names: tuple[str, ...],
+    fixed: dict[str, float],
+    thrusters: list[str],
+    fins: list[str],
+    base: Float[Array, "n"],
+) -> tuple[Unknowns, Float[Array, "n"]]:
+    """Return the choice, and all quantities with the fixed values in place.
+
+    Raises
+    ------
+    ConfigError
+        A name is no state, thruster or fin, or nothing is looked for.
+    """
+    every = [*STATE_NAMES, *thrusters, *fins]
+    groups = {"throttle": thrusters, "deflection": fins}
+    index: list[int] = []
+    for name in names:
+        members = groups.get(name, [name])
+        index += [_place(member, every, list(groups)) for member in members]
+    if not index:
+        raise ConfigError("trim: nothing is looked for; name states, thrusters or `throttle` as unknowns")
+    for name, value in fixed.items():
+        base = base.at[_place(name, every, [])].set(value)
+    index = sorted(set(index))
+    scales = [*STATE_SCALES, *[1.0] * (len(thrusters) + len(fins))]
+    efforts = [0.0] * 12 + [1.0] * (len(thrusters) + len(fins))
+    chosen = Unknowns(
+        tuple(index), jnp.asarray([scales[i] for i in index]), jnp.asarray([efforts[i] for i in index])
+    )
+    return chosen, base
+
+
+def _place(name: str, every: list[str], groups: list[str]) -> int:
+    """Return the place of a name, or raise ConfigError that offers the nearest."""
+    if name in every:
+        return every.index(name)
+    near = difflib.get_close_matches(name, [*every, *groups], n=1)
+    hint = f"; did you mean {near[0]!r}?" if near else ""
+    raise ConfigError(f"trim: unknown quantity {name!r}{hint} Allowed: {', '.join([*every, *groups])}")

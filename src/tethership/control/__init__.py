@@ -1,0 +1,20 @@
+"""Control laws: pure functions of time, measurement and memory. They never see the plant."""
+
+from tethership.control.attitude import AttitudeLaw
+from tethership.control.heading import HeadingLaw, misalignment
+from tethership.control.law import AbstractLaw, Correction, Measurement
+from tethership.control.layers import LayeredLaw
+from tethership.control.navigation import NavigationLaw
+from tethership.control.rewind import RewindLaw
+
+__all__ = [
+    "AbstractLaw",
+    "AttitudeLaw",
+    "Correction",
+    "HeadingLaw",
+    "LayeredLaw",
+    "Measurement",
+    "NavigationLaw",
+    "RewindLaw",
+    "misalignment",
+]

@@ -1,0 +1,94 @@
+"""What a control law is. Depends on nothing.
+
+A law is a pure function of time, measurement and memory that returns a correction and the rate of its memory; the
+integrator carries the memory with the plant's state. A law of one's own is a subclass of `AbstractLaw` with its
+gains as fields and one method.
+"""
+
+import abc
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+
+class Measurement(NamedTuple):
+    """What the sensors of ship and winch tell a law.
+
+    Attributes
+    ----------
+    velocity : Float[Array, "3"]
+        Ground velocity of P, (U, V, W), body axes [m/s].
+    rates : Float[Array, "3"]
+        p, q, r, body axes [rad/s].
+    attitude : Float[Array, "3"]
+        φ, θ, ψ [rad].
+    rate_of_climb : Float[Array, ""]
+        Upward ground velocity of the centre of buoyancy, RoC [m/s].
+    offset : Float[Array, "cables 3"]
+        Tether point from anchor, ε = x_TP − x_AP, ground axes [m].
+    tension : Float[Array, "cables"]
+        Tension at the tether point |F| [N].
+    length : Float[Array, "cables"]
+        Unstretched length L_t [m].
+    rewind_rate : Float[Array, "cables"]
+        Default rewind rate of each winch Ψ̄ [m/s].
+    """
+
+    velocity: Float[Array, "3"]
+    rates: Float[Array, "3"]
+    attitude: Float[Array, "3"]
+    rate_of_climb: Float[Array, ""]
+    offset: Float[Array, "cables 3"]
+    tension: Float[Array, "cables"]
+    length: Float[Array, "cables"]
+    rewind_rate: Float[Array, "cables"]
+
+
+class Correction(NamedTuple):
+    """What a law adds to the trimmed command; what it leaves out is zero.
+
+    Attributes
+    ----------
+    throttle : Float[Array, "thrusters"] or float
+        Δδ [-].
+    deflection : Float[Array, "fins"] or float
+        Δ deflection of the fins [rad].
+    rewind_rate : Float[Array, "cables"] or float
+        ΔΨ, added to the winch's default rate [m/s].
+    """
+
+    throttle: Float[Array, "thrusters"] | float = 0.0
+    deflection: Float[Array, "fins"] | float = 0.0
+    rewind_rate: Float[Array, "cables"] | float = 0.0
+
+
+class AbstractLaw(eqx.Module):
+    """A control law."""
+
+    @abc.abstractmethod
+    def __call__(
+        self, time: Float[Array, ""], measurement: Measurement, memory: Any
+    ) -> tuple[Correction, Any]:
+        """Return the correction and the time derivative of the memory.
+
+        Parameters
+        ----------
+        time : Float[Array, ""]
+            t [s].
+        measurement : Measurement
+            See there.
+        memory : pytree of arrays
+            What `initial_memory` returned, integrated up to now.
+        """
+
+    def initial_memory(self, measurement: Measurement) -> Any:
+        """Return the memory at the start; nothing, unless a law says otherwise."""
+        del measurement
+        return ()
+
+
+def clip(value: Float[Array, ""], limit: Float[Array, ""]) -> Float[Array, ""]:
+    """Return the value clipped to ±limit, same unit."""
+    return jnp.clip(value, -limit, limit)

@@ -1,0 +1,65 @@
+"""Steady wind: uniform, or a power-law profile over height. Depends on: nothing.
+
+References
+----------
+Power law: IEC 61400-1 (2019), normal wind profile, V(h) = V_ref (h / h_ref)^α.
+"""
+
+import abc
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+
+class AbstractWind(eqx.Module):
+    """A steady field of wind, ground axes."""
+
+    @abc.abstractmethod
+    def velocity(self, position: Float[Array, "3"]) -> Float[Array, "3"]:
+        """Return the wind velocity v_w [m/s], ground axes (N, E, D), at a position x [m], ground axes."""
+
+
+class UniformWind(AbstractWind):
+    """The same wind everywhere.
+
+    Attributes
+    ----------
+    value : Float[Array, "3"]
+        Velocity of the air v_w, ground axes [m/s]; a wind *from* the north is (−V, 0, 0).
+    """
+
+    value: Float[Array, "3"]
+
+    def velocity(self, position: Float[Array, "3"]) -> Float[Array, "3"]:
+        """Return v_w [m/s], ground axes, whatever the position x [m]."""
+        return self.value
+
+
+class PowerLawWind(AbstractWind):
+    """Wind that grows with height above the ground, v_w = v_ref (h / h_ref)^α.
+
+    Attributes
+    ----------
+    value : Float[Array, "3"]
+        Wind at the reference height v_ref, ground axes [m/s].
+    reference_height : float
+        Height h_ref above the ground [m].
+    exponent : float
+        Shear exponent α [-], about 1/7 over open land.
+    lowest_height : float
+        Height below which the profile is held constant [m]: the law's slope is infinite at the ground.
+    ground : float
+        Down coordinate of the ground [m]; positive when the origin of the frame (the anchor) is above it.
+    """
+
+    value: Float[Array, "3"]
+    reference_height: Float[Array, ""]
+    exponent: Float[Array, ""]
+    lowest_height: Float[Array, ""]
+    ground: Float[Array, ""]
+
+    def velocity(self, position: Float[Array, "3"]) -> Float[Array, "3"]:
+        """Return v_w [m/s], ground axes, at a position x [m], ground axes."""
+        height = jnp.maximum(self.ground - position[2], self.lowest_height)
+        return self.value * jnp.exp(self.exponent * jnp.log(height / self.reference_height))

@@ -1,0 +1,71 @@
+"""Every output of a flight: name, unit, dimensions, frame and meaning. Depends on nothing."""
+
+from typing import NamedTuple
+
+BODY = ("forward", "starboard", "down")
+"""Labels of body axes."""
+
+GROUND = ("north", "east", "down")
+"""Labels of ground axes."""
+
+ANGLES = ("roll", "pitch", "yaw")
+"""Labels of Euler angles."""
+
+REGIMES = ("slack", "joint", "taut")
+"""Meanings of the values of `regime`."""
+
+FORMAT = 1
+"""Version of the layout of flight files; a file of another layout is refused."""
+
+
+class Variable(NamedTuple):
+    """One output.
+
+    Attributes
+    ----------
+    unit : str
+        SI unit.
+    dims : tuple of str
+        Dimensions after `time`.
+    meaning : str
+        What it is.
+    frame : str
+        Axes of its components, or nothing.
+    """
+
+    unit: str
+    dims: tuple[str, ...]
+    meaning: str
+    frame: str = ""
+
+
+VARIABLES: dict[str, Variable] = {
+    "velocity": Variable("m/s", ("body_axis",), "ground velocity of P", "body"),
+    "rates": Variable("rad/s", ("body_axis",), "angular velocity", "body"),
+    "attitude": Variable("rad", ("angle",), "Euler angles, 3-2-1"),
+    "position": Variable("m", ("ground_axis",), "position of P from the origin (first anchor)", "ground"),
+    "air_velocity": Variable("m/s", ("body_axis",), "velocity of B relative to the air", "body"),
+    "wind": Variable("m/s", ("ground_axis",), "wind and gusts at B", "ground"),
+    "density": Variable("kg/m3", (), "density of the air at B"),
+    "rate_of_climb": Variable("m/s", (), "upward ground velocity of B"),
+    "throttle": Variable("1", ("thruster",), "throttle after clipping"),
+    "saturated": Variable("1", ("thruster",), "1 where a thruster is asked for more than it has"),
+    "deflection": Variable("rad", ("fin",), "deflection of the fins"),
+    "load_force": Variable("N", ("load", "body_axis"), "force of each named load", "body"),
+    "load_moment": Variable("N m", ("load", "body_axis"), "moment of each named load about P", "body"),
+    "cable_force": Variable("N", ("cable", "ground_axis"), "force of the cable on the ship", "ground"),
+    "anchor_force": Variable("N", ("cable", "ground_axis"), "force of the cable on the anchor", "ground"),
+    "tension": Variable("N", ("cable",), "tension at the tether point"),
+    "tension_largest": Variable("N", ("cable",), "largest tension along the cable"),
+    "cable_curve": Variable("m", ("cable", "cable_point", "ground_axis"), "points of the cable", "ground"),
+    "cable_clearance": Variable("m", ("cable",), "height of the cable's lowest point above ground"),
+    "tether_offset": Variable("m", ("cable", "ground_axis"), "tether point from anchor", "ground"),
+    "distance": Variable("m", ("cable",), "distance from anchor to tether point"),
+    "elongation": Variable("1", ("cable",), "distance over unstretched length"),
+    "regime": Variable("1", ("cable",), "0 slack, 1 joint, 2 taut"),
+    "cable_length": Variable("m", ("cable",), "unstretched length"),
+    "rewind_rate": Variable("m/s", ("cable",), "rate at which the winch takes cable in"),
+    "misalignment": Variable("rad", ("cable",), "horizontal angle from nose to anchor, positive to port"),
+    "clearance": Variable("m", (), "height of the hull's lowest point above ground"),
+}
+"""All outputs by name; every one has `time` [s] as its first dimension."""

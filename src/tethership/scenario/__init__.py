@@ -1,0 +1,16 @@
+"""Scenarios: from TOML files to a validated system, its laws and its run settings."""
+
+from tethership.scenario.load import Scenario, list_packaged, load_scenario, read_solver
+from tethership.scenario.schema import ScenarioConfig
+from tethership.scenario.solver import SolverConfig
+from tethership.scenario.vehicle_schema import VehicleConfig
+
+__all__ = [
+    "Scenario",
+    "ScenarioConfig",
+    "SolverConfig",
+    "VehicleConfig",
+    "list_packaged",
+    "load_scenario",
+    "read_solver",
+]

@@ -1,0 +1,104 @@
+"""What a scenario file may say about control laws; the paper's gains are the defaults. Depends on: scenario.quantity."""
+
+import difflib
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from pydantic import field_validator
+
+from tethership.scenario.quantity import Table, quantity
+
+LAYERS = ("rewind", "heading", "navigation")
+"""Names that `layers` may hold; SAS/attitude is always on unless switched off."""
+
+Share = dict[str, float]
+"""Throttle per unit of demand, by the name of the thruster."""
+
+
+def check_layers(names: Iterable[str]) -> tuple[str, ...]:
+    """Return the names of the layers, or raise ValueError that offers the nearest known one."""
+    for name in names:
+        if name not in LAYERS:
+            near = difflib.get_close_matches(name, LAYERS, n=1)
+            hint = f"; did you mean {near[0]!r}?" if near else ""
+            raise ValueError(f"unknown layer {name!r}{hint} Allowed: {', '.join(LAYERS)}")
+    return tuple(names)
+
+
+def _gain(unit: str) -> Any:
+    return quantity(unit)
+
+
+class AttitudeConfig(Table):
+    """Table A.1 of the paper; shares as Eq. 40 with the modulus of the ratio of arms, ½·9.07/2.0."""
+
+    roll_rate_gain: _gain("s/rad") = 2.0
+    pitch_rate_gain: _gain("s/rad") = 1.0
+    yaw_rate_gain: _gain("s/rad") = 5.0
+    roll_gain: _gain("1/rad") = 0.5
+    pitch_gain: _gain("1/rad") = 0.5
+    roll_target: _gain("rad") = 0.0
+    pitch_target: _gain("rad") = 0.0
+    roll_share: Share = {}
+    pitch_share: Share = {}
+    yaw_share: Share = {}
+
+
+class RewindConfig(Table):
+    """Table A.2 of the paper."""
+
+    gain: _gain("m/(s N)") = 0.005
+    threshold: quantity("N", low=0.0) = 144.3
+    slowest_rate: _gain("m/s") = 0.01
+
+
+class HeadingConfig(Table):
+    """Table A.3 of the paper; `fade_radius` 0 never fades."""
+
+    gain: _gain("1/rad") = 5.0
+    fade_radius: quantity("m", low=0.0) = 0.0
+    share: Share = {}
+
+
+class NavigationConfig(Table):
+    """Table A.4 of the paper."""
+
+    position_gain: _gain("1/m") = 0.0033
+    vertical_gain: _gain("1/m") = 0.0033
+    speed_gain: _gain("s/m") = 0.033
+    climb_gain: _gain("s/m") = 0.033
+    speed_slope: quantity("1/s", low=0.0) = 0.1
+    largest_speed: quantity("m/s", low=0.0) = 0.5
+    largest_climb: quantity("m/s", low=0.0) = 0.5
+    forward_share: Share = {}
+    vertical_share: Share = {}
+
+
+class ControlConfig(Table):
+    """Which laws act and with what gains."""
+
+    layers: tuple[str, ...] = ()
+    sas: bool = True
+    attitude: AttitudeConfig = AttitudeConfig()
+    rewind: RewindConfig = RewindConfig()
+    heading: HeadingConfig = HeadingConfig()
+    navigation: NavigationConfig = NavigationConfig()
+
+    @field_validator("layers")
+    @classmethod
+    def _known_layers(cls, names: tuple[str, ...]) -> tuple[str, ...]:
+        return check_layers(names)
+
+    def check_thrusters(self, known: Sequence[str]) -> None:
+        """Raise ValueError if a share names a thruster that the vehicle does not have."""
+        for law in (self.attitude, self.heading, self.navigation):
+            for key in type(law).model_fields:
+                share = getattr(law, key)
+                for name in share if isinstance(share, dict) else ():
+                    if name not in known:
+                        near = difflib.get_close_matches(name, known, n=1)
+                        hint = f"; did you mean {near[0]!r}?" if near else ""
+                        raise ValueError(
+                            f"{key} names the thruster {name!r}, which the vehicle does not have{hint} "
+                            f"It has: {', '.join(known) or 'none'}"
+                        )

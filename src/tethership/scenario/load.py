@@ -1,0 +1,222 @@
+"""Reading scenarios, vehicles and solver settings: packaged by name, or a TOML file. Depends on: scenario, errors."""
+
+import copy
+import dataclasses
+import difflib
+import json
+import tomllib
+from collections.abc import Iterable, Mapping
+from importlib import resources
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import ValidationError
+
+from tethership.control import LayeredLaw
+from tethership.errors import ConfigError
+from tethership.scenario.build import assemble
+from tethership.scenario.control_schema import check_layers
+from tethership.scenario.laws import build_law
+from tethership.scenario.messages import first_problem
+from tethership.scenario.quantity import SI_UNIT, Table
+from tethership.scenario.schema import ScenarioConfig
+from tethership.scenario.solver import SolverConfig
+from tethership.scenario.vehicle_schema import VehicleConfig
+from tethership.system import TetheredAirship
+
+Document = dict[str, Any]
+ModelType = TypeVar("ModelType", bound=Table)
+
+
+@dataclasses.dataclass(frozen=True)
+class Scenario:
+    """A validated flight: the plant and everything that is set around it.
+
+    Attributes
+    ----------
+    name : str
+        Packaged name or file.
+    config : ScenarioConfig
+        Its numbers, SI and radians.
+    document : dict
+        The file as read, vehicle and changes included: enough to load it again, bit for bit.
+    system : TetheredAirship
+        The plant.
+    """
+
+    name: str
+    config: ScenarioConfig
+    document: Document
+    system: TetheredAirship
+
+    @property
+    def formulation(self) -> str:
+        """`consistent` or `published`."""
+        return self.config.formulation
+
+    @property
+    def layers(self) -> tuple[str, ...]:
+        """Control layers besides SAS/attitude."""
+        return self.config.control.layers
+
+    def law(self, layers: Iterable[str] | None = None, sas: bool | None = None) -> LayeredLaw:
+        """Return the layered law.
+
+        Parameters
+        ----------
+        layers : iterable of str, optional
+            Instead of the scenario's own.
+        sas : bool, optional
+            SAS/attitude on or off instead of the scenario's own.
+
+        Raises
+        ------
+        ConfigError
+            A layer is not known.
+        """
+        control = self.config.control
+        try:
+            names = control.layers if layers is None else check_layers(layers)
+        except ValueError as error:
+            raise ConfigError(str(error)) from error
+        chosen = control.model_copy(update={"layers": names, "sas": control.sas if sas is None else sas})
+        return build_law(self.config.model_copy(update={"control": chosen}))
+
+    def changed(self, changes: Mapping[str, Any]) -> "Scenario":
+        """Return the scenario with values changed; see `load_scenario`."""
+        return from_document(self.document, self.name, changes)
+
+
+def _packaged(folder: str) -> dict[str, Any]:
+    """Return the packaged files of a folder of `data`, by name."""
+    root = resources.files("tethership") / "data" / folder
+    return {item.name[:-5]: item for item in root.iterdir() if item.name.endswith(".toml")}
+
+
+def list_packaged() -> dict[str, list[str]]:
+    """Return the names of the packaged scenarios, vehicles and solvers."""
+    return {kind: sorted(_packaged(kind)) for kind in ("scenarios", "vehicles", "solvers")}
+
+
+def packaged_text(folder: str, name: str) -> str:
+    """Return the text of a packaged file, or raise ConfigError that offers the nearest name."""
+    files = _packaged(folder)
+    if name in files:
+        return files[name].read_text(encoding="utf-8")
+    near = difflib.get_close_matches(name, files, n=1)
+    hint = f"; did you mean {near[0]!r}?" if near else ""
+    raise ConfigError(
+        f"no {folder[:-1]} {name!r}{hint} Packaged: {', '.join(sorted(files))}; a file of your own ends in .toml"
+    )
+
+
+def _read(folder: str, name: str, base: Path | None = None) -> tuple[Document, str]:
+    """Return a document and where it came from."""
+    if not name.endswith(".toml"):
+        return _parsed(packaged_text(folder, name), name), name
+    path = Path(name) if base is None or Path(name).is_absolute() else base / name
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else "it is not a text file"
+        raise ConfigError(f"cannot read {path}: {reason}") from error
+    return _parsed(text, str(path)), str(path)
+
+
+def _parsed(text: str, origin: str) -> Document:
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigError(f"{origin} is not TOML: {error}") from error
+
+
+def validated(model: type[ModelType], document: Document, origin: str) -> ModelType:
+    """Return the model of a document, or raise ConfigError that names file, key and value."""
+    try:
+        return model.model_validate(document)
+    except ValidationError as error:
+        raise ConfigError(first_problem(error, origin, document)) from error
+
+
+def load_scenario(name: str = "docking", changes: Mapping[str, Any] | None = None) -> Scenario:
+    """Return a scenario.
+
+    Parameters
+    ----------
+    name : str
+        A packaged name (see `list_packaged`) or a path that ends in `.toml`.
+    changes : mapping, optional
+        Dotted name → value, e.g. ``{"wind.speed": 12.0, "vehicle.body.mass": 130.0}``; numbers in SI and radians.
+        Items of a list go by name or number: ``cables.nose.length``, ``gusts.0.start``.
+
+    Raises
+    ------
+    ConfigError
+        Not found, not TOML, or a key, unit or value that cannot be.
+    """
+    document, origin = _read("scenarios", name)
+    vehicle = document.get("vehicle")
+    if isinstance(vehicle, str):
+        base = Path(origin).parent if origin.endswith(".toml") else None
+        document["vehicle"], vehicle_origin = _read("vehicles", vehicle, base)
+        validated(VehicleConfig, document["vehicle"], vehicle_origin)
+    own_changes = document.pop("changes", {})
+    for key, value in {**own_changes, **(changes or {})}.items():
+        change(document, key, value, origin)
+    return from_document(document, origin)
+
+
+def from_document(document: Document, origin: str, changes: Mapping[str, Any] | None = None) -> Scenario:
+    """Return the scenario of a document whose vehicle is included, with changes as in `load_scenario`."""
+    document = copy.deepcopy(document)
+    for key, value in (changes or {}).items():
+        change(document, key, value, origin)
+    config = validated(ScenarioConfig, document, origin)
+    return Scenario(origin, config, document, assemble(config))
+
+
+def change(document: Document, dotted: str, value: Any, origin: str) -> None:
+    """Set one value of a document in place, by its dotted name."""
+    *path, last = dotted.split(".")
+    place: Any = document
+    for step in path:
+        place = _enter(place, step, dotted, origin)
+    if isinstance(place, list):
+        place, last = _enter(place, last, dotted, origin), ""
+    if not isinstance(place, dict):
+        raise ConfigError(f"{origin}: {dotted!r} is no value that can be changed")
+    number = isinstance(value, int | float | list | tuple) and not isinstance(value, bool)
+    if number and last not in ("layers", "unknowns"):
+        value = {"value": list(value) if isinstance(value, tuple) else value, "unit": SI_UNIT}
+    place[last] = value
+
+
+def _enter(place: Any, step: str, dotted: str, origin: str) -> Any:
+    """Return the table or list item called `step`."""
+    if isinstance(place, list):
+        named = [item for item in place if isinstance(item, dict) and item.get("name") == step]
+        if named:
+            return named[0]
+        if step.isdigit() and int(step) < len(place):
+            return place[int(step)]
+        raise ConfigError(f"{origin}: {dotted!r}: no item {step!r} in a list of {len(place)}")
+    if isinstance(place, dict):
+        return place.setdefault(step, {})
+    raise ConfigError(f"{origin}: {dotted!r}: {step!r} is inside a value, not a table")
+
+
+def read_solver(name: str = "adaptive") -> SolverConfig:
+    """Return solver settings, packaged by name or from a path that ends in `.toml`.
+
+    Raises
+    ------
+    ConfigError
+        As `load_scenario`.
+    """
+    document, origin = _read("solvers", name)
+    return validated(SolverConfig, document, origin)
+
+
+def document_text(document: Document) -> str:
+    """Return a document as JSON, for the attributes of a result."""
+    return json.dumps(document, sort_keys=True)

@@ -1,0 +1,53 @@
+"""One clear line out of pydantic's list of problems. Depends on: pydantic."""
+
+from typing import Any
+
+from pydantic import ValidationError
+
+
+def first_problem(error: ValidationError, origin: str, document: Any) -> str:
+    """Return one line: file, key, what came, what is allowed; and how many more problems there are.
+
+    Parameters
+    ----------
+    error : ValidationError
+        What pydantic raised.
+    origin : str
+        File or packaged name.
+    document : Any
+        What was validated; list items are named by their `name` where they have one.
+    """
+    problems = error.errors(include_url=False)
+    key = _dotted(document, problems[0]["loc"]) or "the file"
+    more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
+    return f"{origin}: {key}: {_said(problems[0])}{more}"
+
+
+def _dotted(document: Any, location: tuple[int | str, ...]) -> str:
+    """Return the path of a key as the file has it, without the tags pydantic adds for unions."""
+    keys: list[str] = []
+    here = document
+    for index, step in enumerate(location):
+        inside_list = isinstance(here, list) and isinstance(step, int) and step < len(here)
+        inside_table = isinstance(here, dict) and step in here
+        if not inside_list and not inside_table:
+            if index == len(location) - 1:
+                keys.append(str(step))
+            continue
+        here = here[step]
+        name = here.get("name") if inside_list and isinstance(here, dict) else None
+        keys.append(str(name or step))
+    return ".".join(keys)
+
+
+def _said(problem: Any) -> str:
+    """Return what is wrong with one value."""
+    kind = problem["type"]
+    if kind == "missing":
+        return "it is missing; add it (`tethership new` writes a complete file to start from)"
+    if kind in ("union_tag_not_found", "union_tag_invalid"):
+        context = problem["ctx"]
+        return f"give {context['discriminator']} as one of {context.get('expected_tags', 'the known kinds')}"
+    if kind == "value_error":
+        return str(problem["ctx"]["error"])
+    return f"it is {problem['input']!r}; {problem['msg'][0].lower()}{problem['msg'][1:]}"

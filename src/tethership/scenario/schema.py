@@ -1,0 +1,190 @@
+"""What a scenario file may say: air, ground, cables, start, laws, stop and limits. Depends on: scenario.quantity."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from tethership.scenario.control_schema import ControlConfig
+from tethership.scenario.quantity import Table, Vector, quantity
+from tethership.scenario.vehicle_schema import VehicleConfig
+
+Angle = quantity("rad")
+Speed = quantity("m/s", low=0.0)
+Metres = quantity("m", positive=True)
+Seconds = quantity("s", positive=True)
+Point = quantity("m", kind=Vector, depth=1)
+Newtons = quantity("N", positive=True)
+
+
+class StandardAir(Table):
+    """ISA troposphere."""
+
+    model: Literal["isa"] = "isa"
+    ground_altitude: quantity("m", low=-1000.0, high=10_000.0) = 0.0
+    temperature_offset: quantity("K", low=-80.0, high=80.0) = 0.0
+
+
+class ConstantAir(Table):
+    """The same density everywhere."""
+
+    model: Literal["constant"]
+    density: quantity("kg/m^3", low=0.0)
+
+
+AirConfig = Annotated[StandardAir | ConstantAir, Field(discriminator="model")]
+
+
+class UniformWindConfig(Table):
+    """The same wind everywhere; `from_direction` is where it comes from, clockwise from north."""
+
+    model: Literal["uniform"] = "uniform"
+    speed: Speed
+    from_direction: Angle = 0.0
+
+
+class PowerLawWindConfig(Table):
+    """Wind growing with height; `speed` is that at `reference_height`."""
+
+    model: Literal["power_law"]
+    speed: Speed
+    from_direction: Angle = 0.0
+    reference_height: Metres
+    exponent: quantity("1", low=0.0, high=1.0)
+    lowest_height: Metres = 0.5
+
+
+WindConfig = Annotated[UniformWindConfig | PowerLawWindConfig, Field(discriminator="model")]
+
+
+class GustConfig(Table):
+    """A 1 − cos pulse; its peak is a `fraction` of the wind, or a `speed`."""
+
+    fraction: quantity("1", low=0.0) | None = None
+    speed: Speed | None = None
+    from_direction: Angle
+    upward_angle: Angle = 0.0
+    start: quantity("s", low=0.0)
+    period: Seconds
+
+    @model_validator(mode="after")
+    def _one_amplitude(self) -> "GustConfig":
+        if (self.fraction is None) == (self.speed is None):
+            raise ValueError("give either fraction (of the wind) or speed, not both and not neither")
+        return self
+
+
+class GroundConfig(Table):
+    """The ground under the first anchor.
+
+    With `anchor_height` given (a mast), a hull that touches the ground ends the flight; without it the anchor is
+    at ground level and the least clearance is only recorded.
+    """
+
+    anchor_height: quantity("m", low=0.0) | None = None
+    effect_coefficient: quantity("1/m") | None = None
+
+
+class WinchConfig(Table):
+    """The drive of a cable."""
+
+    rewind_rate: Speed
+    fastest_rate: Speed
+
+
+class CableConfig(Table):
+    """One cable; `tether_point` from the origin of the body axes, `anchor` in ground axes."""
+
+    name: str
+    tether_point: Point
+    anchor: Point
+    length: Metres
+    diameter: quantity("m", low=0.0)
+    linear_density: quantity("kg/m", low=0.0)
+    stiffness: Newtons
+    breaking_force: Newtons
+    joint_start: quantity("1", positive=True)
+    joint_end: quantity("1", positive=True)
+    cross_flow_drag_coefficient: quantity("1", low=0.0)
+    longitudinal_drag_coefficient: quantity("1", low=0.0)
+    winch: WinchConfig
+
+    @model_validator(mode="after")
+    def _joint(self) -> "CableConfig":
+        if not self.joint_start < 1.0 <= self.joint_end:
+            raise ValueError(
+                f"joint_start {self.joint_start:g} and joint_end {self.joint_end:g} must be below and above 1"
+            )
+        return self
+
+
+class TrimConfig(Table):
+    """What is looked for and what is held when the flight's start is trimmed.
+
+    `unknowns` are names of states (u … down), of thrusters or fins, `throttle` (all thrusters) or `deflection`
+    (all fins). `fixed` holds states at values other than zero. With `hold = "tether_point"` the first cable's
+    tether point is put at `elongation` times its length from the anchor, at `elevation` and `bearing` from there.
+    """
+
+    hold: Literal["tether_point", "reference_point"] = "tether_point"
+    unknowns: tuple[str, ...] = ("throttle",)
+    elongation: quantity("1", positive=True) | None = None
+    elevation: quantity("rad", low=-1.5708, high=1.5708) = 0.7853981633974483
+    bearing: Angle = 3.141592653589793
+    position: Point | None = None
+    velocity: quantity("m/s", kind=Vector, depth=1) = (0.0, 0.0, 0.0)
+    attitude: quantity("rad", kind=Vector, depth=1) = (0.0, 0.0, 0.0)
+
+
+class StartConfig(Table):
+    """How the flight's start differs from trim; `hold` is the point that stays where it is."""
+
+    attitude_offset: quantity("rad", kind=Vector, depth=1) = (0.0, 0.0, 0.0)
+    hold: Literal["tether_point", "reference_point"] = "tether_point"
+
+
+class StopConfig(Table):
+    """What ends a flight."""
+
+    cable_length: quantity("m", low=0.0) = 1.5
+    time_limit: Seconds = 200.0
+    largest_pitch: quantity("rad", positive=True, high=1.55) = 1.3962634015954636
+
+
+class LimitsConfig(Table):
+    """Tensions to be watched."""
+
+    control_threshold: Newtons
+    envelope_tear: Newtons
+    envelope_tensile: Newtons
+    cable_break: Newtons
+
+
+class ScenarioConfig(Table):
+    """A flight to be trimmed and flown."""
+
+    title: str
+    description: str = ""
+    vehicle: VehicleConfig
+    formulation: Literal["consistent", "published"] = "consistent"
+    atmosphere: AirConfig = StandardAir()
+    wind: WindConfig
+    gusts: tuple[GustConfig, ...] = ()
+    ground: GroundConfig = GroundConfig()
+    cables: tuple[CableConfig, ...] = ()
+    trim: TrimConfig = TrimConfig()
+    start: StartConfig = StartConfig()
+    control: ControlConfig = ControlConfig()
+    stop: StopConfig = StopConfig()
+    limits: LimitsConfig
+
+    @model_validator(mode="after")
+    def _whole(self) -> "ScenarioConfig":
+        if self.trim.position is None and (not self.cables or self.trim.elongation is None):
+            raise ValueError("trim needs a position, or a cable and an elongation")
+        names = [cable.name for cable in self.cables]
+        if len(set(names)) != len(names):
+            raise ValueError("two cables have the same name; every name must be its own")
+        self.control.check_thrusters([t.name for t in self.vehicle.thrusters])
+        if not self.cables and set(self.control.layers) & {"rewind", "heading", "navigation"}:
+            raise ValueError(f"layers {list(self.control.layers)} need a cable, and there is none")
+        return self

@@ -1,0 +1,177 @@
+"""What a vehicle file may say. Every number has a value, a unit and a source. Depends on: scenario.quantity."""
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from tethership.scenario.quantity import Matrix, Table, Vector, quantity
+
+
+def _sourced(unit: str, **options: Any) -> Any:
+    return quantity(unit, sourced=True, **options)
+
+
+Length = _sourced("m", positive=True)
+Position = _sourced("m", kind=Vector, depth=1)
+Number = _sourced("1")
+Positive = _sourced("1", positive=True)
+NotNegative = _sourced("1", low=0.0)
+
+
+class BodyConfig(Table):
+    """Mass, centre of gravity and inertia, from the origin of the body axes."""
+
+    mass: _sourced("kg", positive=True)
+    centre_of_gravity: Position
+    inertia: _sourced("kg m^2", kind=Matrix, depth=2)
+
+    @model_validator(mode="after")
+    def _positive_definite(self) -> "BodyConfig":
+        matrix = np.array(self.inertia)
+        centre = np.array(self.centre_of_gravity)
+        if not np.allclose(matrix, matrix.T):
+            raise ValueError("inertia is not symmetric; give the matrix itself, entry J13 twice")
+        about_g = matrix - self.mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
+        lowest = np.linalg.eigvalsh(about_g).min()
+        if lowest <= 0:
+            raise ValueError(
+                f"inertia is not positive definite: about the centre of gravity its least principal moment is "
+                f"{lowest:.4g} kg m²; check its entries (about the origin, in kg m²) and centre_of_gravity"
+            )
+        return self
+
+
+class GertlerHull(Table):
+    """Gertler hull by its six coefficients."""
+
+    profile: Literal["gertler"]
+    length: Length
+    diameter: Length
+    coefficients: _sourced("1", kind=tuple[float, float, float, float, float, float], depth=1)
+
+
+class GertlerShapeHull(Table):
+    """Gertler hull by its shape parameters."""
+
+    profile: Literal["gertler_shape"]
+    length: Length
+    diameter: Length
+    largest_section: Positive
+    nose_radius: NotNegative
+    tail_radius: NotNegative
+    prismatic_coefficient: Positive
+
+
+class EllipsoidHull(Table):
+    """Ellipsoid of revolution."""
+
+    profile: Literal["ellipsoid"]
+    length: Length
+    diameter: Length
+
+
+HullConfig = Annotated[GertlerHull | GertlerShapeHull | EllipsoidHull, Field(discriminator="profile")]
+
+
+class BuoyancyConfig(Table):
+    """Displaced volume and its centre, from the origin of the body axes."""
+
+    volume: _sourced("m^3", positive=True)
+    centre: Position
+
+
+class FactorsConfig(Table):
+    """Apparent mass by published factors."""
+
+    model: Literal["factors"]
+    k1: NotNegative
+    k2: NotNegative
+    k3: NotNegative
+    k_rotational: NotNegative
+    gyration_radius_squared: _sourced("m^2", kind=tuple[float, float], depth=1)
+
+    @model_validator(mode="after")
+    def _revolution(self) -> "FactorsConfig":
+        if self.k2 != self.k3:
+            raise ValueError(f"k2 = {self.k2} and k3 = {self.k3} differ; a body of revolution has k2 = k3")
+        return self
+
+
+class LambConfig(Table):
+    """Apparent mass by Lamb's formulas from the hull's length over diameter, or a given fineness ratio."""
+
+    model: Literal["lamb"]
+    fineness: _sourced("1", low=1.0001) | None = None
+
+
+ApparentMassConfig = Annotated[FactorsConfig | LambConfig, Field(discriminator="model")]
+
+
+class EnvelopeConfig(Table):
+    """Hull loads besides apparent mass."""
+
+    axial_drag_coefficient: NotNegative
+    cross_flow_drag_coefficient: NotNegative
+    slice_efficiency: NotNegative
+    potential_length: Length
+
+
+class FinConfig(Table):
+    """One fin; roll angle 0 is starboard, 90° down."""
+
+    name: str
+    roll: _sourced("rad")
+    area: _sourced("m^2", positive=True)
+    lift_slope: _sourced("1/rad", low=0.0)
+    efficiency: NotNegative
+    cross_flow_drag_coefficient: NotNegative
+    axial_drag_coefficient: NotNegative
+    aerodynamic_station: _sourced("m")
+    cross_flow_station: _sourced("m")
+    distance_from_axis: _sourced("m", low=0.0)
+
+
+class ThrusterConfig(Table):
+    """One thruster."""
+
+    name: str
+    position: Position
+    direction: _sourced("1", kind=Vector, depth=1)
+    nominal_thrust: _sourced("N", positive=True)
+    reversible: bool
+    speed_of_no_thrust: _sourced("m/s", positive=True) | None = None
+
+    @model_validator(mode="after")
+    def _unit_direction(self) -> "ThrusterConfig":
+        length = float(np.linalg.norm(self.direction))
+        if abs(length - 1.0) > 1e-6:
+            raise ValueError(f"direction has length {length:.6g}; give a unit vector")
+        return self
+
+
+class VehicleConfig(Table):
+    """An airship."""
+
+    name: str
+    description: str
+    body: BodyConfig
+    hull: HullConfig
+    buoyancy: BuoyancyConfig
+    apparent_mass: ApparentMassConfig
+    envelope: EnvelopeConfig
+    fins: tuple[FinConfig, ...] = ()
+    thrusters: tuple[ThrusterConfig, ...] = ()
+
+    @model_validator(mode="after")
+    def _hull_fits(self) -> "VehicleConfig":
+        if self.envelope.potential_length > self.hull.length:
+            raise ValueError(
+                f"envelope.potential_length {self.envelope.potential_length:g} m is beyond the hull's length "
+                f"{self.hull.length:g} m"
+            )
+        names = [part.name for part in (*self.fins, *self.thrusters)]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise ValueError(f"two fins or thrusters are named {twice[0]!r}; every name must be its own")
+        return self

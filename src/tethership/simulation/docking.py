@@ -1,0 +1,221 @@
+"""The docking manoeuvre: from a trimmed point to a flight with its full input. Depends on: simulation, scenario."""
+
+import json
+import platform
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any, Protocol
+
+import diffrax
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from tethership._version import __version__
+from tethership.control import AbstractLaw
+from tethership.errors import ConfigError, SolveError
+from tethership.results import store
+from tethership.scenario import Scenario, SolverConfig, read_solver
+from tethership.scenario.load import from_document, validated
+from tethership.simulation.closed_loop import ClosedLoop
+from tethership.simulation.events import StopConditions
+from tethership.simulation.flight import Flight, Progress, fly
+from tethership.simulation.outcome import Outcome
+from tethership.spatial import rotation_matrix
+from tethership.system import Command, State
+
+
+class Start(Protocol):
+    """A trimmed point: what a flight starts from."""
+
+    @property
+    def state(self) -> State:
+        """State of the ship at trim."""
+        ...
+
+    @property
+    def command(self) -> Command:
+        """Trimmed throttles and deflections."""
+        ...
+
+
+def start_state(scenario: Scenario, trimmed: State) -> State:
+    """Return the state in which the flight begins: trim with its attitude moved.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Says by how much (`start.attitude_offset`) and which point stays in place (`start.hold`).
+    trimmed : State
+        State at trim.
+    """
+    start = scenario.config.start
+    attitude = trimmed.attitude + jnp.asarray(start.attitude_offset)
+    position = trimmed.position
+    if start.hold == "tether_point" and scenario.system.cables:
+        point = scenario.system.cables[0].tether_point
+        before = rotation_matrix(trimmed.attitude)
+        position = position + (before - rotation_matrix(attitude)) @ point
+    return State(trimmed.velocity, trimmed.rates, attitude, position)
+
+
+def _stop_conditions(scenario: Scenario) -> StopConditions:
+    stop = scenario.config.stop
+    return StopConditions(
+        jnp.asarray(stop.cable_length),
+        jnp.asarray(stop.largest_pitch),
+        scenario.config.ground.anchor_height is not None,
+    )
+
+
+def _check_start(loop: ClosedLoop, stop: StopConditions, vector: Float[Array, "n"]) -> None:
+    """Raise ConfigError where the flight would be over before it begins."""
+    docked, broken, contact, pitch = np.asarray(stop.margins(loop, jnp.zeros(()), vector))
+    if broken <= 0:
+        raise ConfigError(
+            f"the start is beyond breaking: a cable is at {1 - broken:.2f} of its breaking force; lengthen the cable "
+            "or lower trim.elongation or start.attitude_offset"
+        )
+    if docked <= 0:
+        raise ConfigError("the start is docked already: cables.length must be above stop.cable_length")
+    if contact <= 0:
+        raise ConfigError(f"the start has the hull {-contact:.2f} m below ground; raise ground.anchor_height")
+    if pitch <= 0:
+        raise ConfigError("the start is beyond stop.largest_pitch; lower start.attitude_offset")
+
+
+def dock(
+    scenario: Scenario,
+    point: Start,
+    layers: Iterable[str] | None = None,
+    sas: bool | None = None,
+    solver: str | SolverConfig = "adaptive",
+    progress: Progress | None = None,
+    throw: bool = False,
+    own_laws: Mapping[str, AbstractLaw] | None = None,
+) -> Flight:
+    """Fly the docking manoeuvre.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        From `load_scenario`.
+    point : Start
+        From `trim`.
+    layers : iterable of str, optional
+        Of `rewind`, `heading`, `navigation`, instead of the scenario's own; `()` for none.
+    sas : bool, optional
+        SAS/attitude on or off instead of the scenario's own.
+    solver : str or SolverConfig
+        Packaged name, TOML path or settings.
+    progress : callable, optional
+        Called with the time reached [s].
+    throw : bool
+        Raise SolveError instead of returning a flight that diverged, ran out of steps or was interrupted.
+    own_laws : mapping of str to AbstractLaw, optional
+        Laws of one's own by name, added to the layers.
+
+    Raises
+    ------
+    ConfigError
+        A layer is not known, or the start is over before it begins.
+    """
+    config = read_solver(solver) if isinstance(solver, str) else solver
+    names = scenario.layers if layers is None else tuple(layers)
+    active = scenario.config.control.sas if sas is None else sas
+    law = scenario.law(names, active).joined(own_laws or {})
+    loop = ClosedLoop(scenario.system, law, point.command)
+    stop = _stop_conditions(scenario)
+    vector = loop.initial(start_state(scenario, point.state))
+    _check_start(loop, stop, vector)
+    flown = fly(loop, vector, stop, config, scenario.config.stop.time_limit, progress)
+    if throw and not flown.outcome.is_answer:
+        raise SolveError(flown.outcome.value)
+    attributes = {
+        "outcome": flown.outcome.name,
+        "steps": flown.steps,
+        "layers": [*names, *(own_laws or {})],
+        "sas": active,
+        "formulation": scenario.formulation,
+        "limits": dict(scenario.config.limits),
+        "scenario_name": scenario.name,
+        "scenario": scenario.document,
+        "solver": config.model_dump(mode="json"),
+        "trim": _point_numbers(point),
+        "versions": _versions(),
+    }
+    return Flight(store.to_dataset(flown.arrays, _labels(scenario), attributes), flown.outcome)
+
+
+def _labels(scenario: Scenario) -> dict[str, list[str]]:
+    """Return the labels of thrusters, fins, cables and loads."""
+    config = scenario.config
+    cables = [cable.name for cable in config.cables]
+    loads = ["gravity", "buoyancy", "apparent_mass", "envelope", "fins", "thrust"]
+    return {
+        "thruster": [thruster.name for thruster in config.vehicle.thrusters],
+        "fin": [fin.name for fin in config.vehicle.fins],
+        "cable": cables,
+        "load": loads + [f"cable_{i + 1}" for i in range(len(cables))],
+    }
+
+
+def _point_numbers(point: Start) -> dict[str, Any]:
+    """Return a trimmed point as plain numbers, which JSON keeps bit for bit."""
+    return {
+        "state": np.asarray(point.state.as_vector()).tolist(),
+        "throttle": np.asarray(point.command.throttle).tolist(),
+        "deflection": np.asarray(point.command.deflection).tolist(),
+    }
+
+
+def _versions() -> dict[str, str]:
+    return {
+        "tethership": __version__,
+        "jax": jax.__version__,
+        "diffrax": diffrax.__version__,
+        "numpy": np.__version__,
+        "python": platform.python_version(),
+    }
+
+
+class _StoredStart:
+    """A trimmed point read from a flight file."""
+
+    def __init__(self, numbers: dict[str, Any]) -> None:
+        self.state = State.from_vector(jnp.asarray(numbers["state"]))
+        self.command = Command(
+            jnp.asarray(numbers["throttle"], dtype=float), jnp.asarray(numbers["deflection"], dtype=float)
+        )
+
+
+def fly_again(path: str | Path, progress: Progress | None = None) -> tuple[Scenario, Flight]:
+    """Fly the stored input of a flight file again, to the same numbers.
+
+    Parameters
+    ----------
+    path : str or Path
+        A file that `Flight.save` wrote.
+    progress : callable, optional
+        As in `dock`.
+
+    Raises
+    ------
+    ConfigError
+        The file is no flight, of another version, or its input is not readable.
+    """
+    stored = Flight.load(path).attributes
+    scenario = from_document(stored["scenario"], stored["scenario_name"])
+    if set(stored["layers"]) - {"rewind", "heading", "navigation"}:
+        raise ConfigError(f"{path} was flown with a law of one's own: {json.dumps(stored['layers'])}")
+    solver = {
+        key: {"value": value, "unit": "SI"} if key.endswith(("_step", "_interval")) else value
+        for key, value in stored["solver"].items()
+    }
+    config = validated(SolverConfig, solver, str(path))
+    start = _StoredStart(stored["trim"])
+    return scenario, dock(scenario, start, stored["layers"], stored["sas"], config, progress)
+
+
+__all__ = ["Outcome", "Start", "dock", "fly_again", "start_state"]

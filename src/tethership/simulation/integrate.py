@@ -1,0 +1,188 @@
+"""Integration of one segment of a flight with diffrax, sampled densely. Depends on: simulation, diffrax.
+
+A flight is flown in segments of a fixed number of samples, so that one compiled program serves flights of any
+length, progress can be shown and an interrupted flight keeps what was flown.
+"""
+
+from typing import NamedTuple
+
+import diffrax
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import optimistix
+from jaxtyping import Array, Bool, Float, Int
+
+from tethership.scenario.solver import SolverConfig
+from tethership.simulation.closed_loop import ClosedLoop
+from tethership.simulation.events import StopConditions
+from tethership.simulation.record import record
+
+SAMPLES = 800
+"""Samples in a segment."""
+
+FIRST_STEP = 0.01
+"""First step of every adaptive segment [s]; the controller multiplies it by up to ten a step."""
+
+SEGMENT_STEPS = 512
+"""Steps at most in one call; a segment that needs more is continued by another call."""
+
+METHODS = {
+    "tsit5": diffrax.Tsit5,
+    "dopri5": diffrax.Dopri5,
+    "dopri8": diffrax.Dopri8,
+    "kvaerno5": diffrax.Kvaerno5,
+}
+"""Solvers by the name a solver file gives."""
+
+
+class Segment(NamedTuple):
+    """What one call returns.
+
+    Attributes
+    ----------
+    time : Float[Array, ""]
+        Time reached [s].
+    vector : Float[Array, "n"]
+        Integrator's vector there.
+    stopped : Bool[Array, ""]
+        Whether a stop condition was met.
+    finite : Bool[Array, ""]
+        Whether everything stayed finite.
+    margins : Float[Array, "4"]
+        Margins at the end, in the order of `events.MARGINS`.
+    steps : Int[Array, ""]
+        Steps taken, rejected ones included.
+    sample_times : Float[Array, "samples"]
+        Times of the samples [s]; those beyond `time` are to be dropped.
+    samples : dict
+        Outputs, first axis the sample.
+    last : dict
+        Outputs at `time`.
+    """
+
+    time: Float[Array, ""]
+    vector: Float[Array, "n"]
+    stopped: Bool[Array, ""]
+    finite: Bool[Array, ""]
+    margins: Float[Array, "4"]
+    steps: Int[Array, ""]
+    sample_times: Float[Array, "samples"]
+    samples: dict[str, Array]
+    last: dict[str, Array]
+
+
+class Stepping(eqx.Module):
+    """Solver settings as the compiled program sees them.
+
+    Attributes
+    ----------
+    tolerances : Float[Array, "2"]
+        Relative and absolute.
+    largest_step, smallest_step : float
+        [s]; below the smallest a step is taken as it is, so that a jumping command (χ) is stepped over.
+    output_interval : float
+        [s].
+    method : str
+        Key of `METHODS`.
+    adaptive : bool
+    """
+
+    tolerances: Float[Array, "2"]
+    largest_step: Float[Array, ""]
+    smallest_step: Float[Array, ""]
+    output_interval: Float[Array, ""]
+    method: str = eqx.field(static=True)
+    adaptive: bool = eqx.field(static=True)
+
+    @classmethod
+    def from_config(cls, config: SolverConfig) -> "Stepping":
+        """Return the settings of a validated solver file."""
+        return cls(
+            jnp.array([config.relative_tolerance, config.absolute_tolerance]),
+            jnp.asarray(config.largest_step),
+            jnp.asarray(config.smallest_step),
+            jnp.asarray(config.output_interval),
+            config.method,
+            config.step == "adaptive",
+        )
+
+
+def _controller(stepping: Stepping, corners: Float[Array, "n"]) -> diffrax.AbstractStepSizeController:
+    """Return the step-size controller, stepping on the corners of gusts."""
+    if not stepping.adaptive:
+        return diffrax.ConstantStepSize()
+    controller = diffrax.PIDController(
+        rtol=stepping.tolerances[0],  # pyright: ignore[reportArgumentType]
+        atol=stepping.tolerances[1],  # pyright: ignore[reportArgumentType]
+        dtmin=stepping.smallest_step,
+        dtmax=stepping.largest_step,
+        force_dtmin=True,
+    )
+    if corners.shape[0] == 0:
+        return controller
+    return diffrax.ClipStepSizeController(controller, jump_ts=corners)
+
+
+@eqx.filter_jit
+def fly_segment(
+    loop: ClosedLoop,
+    stop: StopConditions,
+    stepping: Stepping,
+    start: Float[Array, ""],
+    vector: Float[Array, "n"],
+    end: Float[Array, ""],
+    sample_times: Float[Array, "samples"],
+) -> Segment:
+    """Fly from one time to another, or until a stop condition or the budget of one call.
+
+    Parameters
+    ----------
+    loop : ClosedLoop
+        Plant, law and trimmed command.
+    stop : StopConditions
+        What ends the flight.
+    stepping : Stepping
+        Solver settings.
+    start, end : Float[Array, ""]
+        Times [s].
+    vector : Float[Array, "n"]
+        Integrator's vector at the start.
+    sample_times : Float[Array, "samples"]
+        When to sample [s].
+    """
+    solution = diffrax.diffeqsolve(
+        diffrax.ODETerm(lambda t, y, args: args[0].vector_field(t, y)),
+        METHODS[stepping.method](),
+        start,
+        end,
+        jnp.minimum(FIRST_STEP, stepping.largest_step) if stepping.adaptive else stepping.largest_step,
+        vector,
+        args=(loop, stop),
+        saveat=diffrax.SaveAt(t1=True, dense=True),
+        stepsize_controller=_controller(stepping, loop.plant.environment.corner_times()),
+        event=diffrax.Event(
+            lambda t, y, args, **_: args[1].least(args[0], t, y),
+            optimistix.Bisection(rtol=1e-12, atol=1e-10),
+        ),
+        max_steps=SEGMENT_STEPS,
+        adjoint=diffrax.ForwardMode(),
+        throw=False,
+    )
+    assert solution.ts is not None
+    assert solution.ys is not None
+    reached, final = solution.ts[-1], solution.ys[-1]
+    samples = jax.vmap(lambda t: solution.evaluate(jnp.clip(t, start, reached)))(sample_times)
+    samples = jnp.where((sample_times <= start)[:, None], vector, samples)
+    outputs = jax.vmap(lambda t, y: record(loop, t, y))(sample_times, samples)
+    return Segment(
+        time=reached,
+        vector=final,
+        stopped=solution.result == diffrax.RESULTS.event_occurred,
+        finite=jnp.all(jnp.isfinite(final)) & jnp.isfinite(reached),
+        margins=stop.margins(loop, reached, final),
+        steps=jnp.asarray(solution.stats["num_steps"]),
+        sample_times=sample_times,
+        samples=outputs,
+        last=record(loop, reached, final),
+    )

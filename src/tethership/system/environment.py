@@ -1,0 +1,96 @@
+"""Everything around the ship: gravity, density, wind and gusts. Depends on: physics, spatial."""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from tethership.physics.atmosphere import AbstractAtmosphere
+from tethership.physics.ground_effect import GroundEffect
+from tethership.physics.gust import CosineGust
+from tethership.physics.wind import AbstractWind
+
+
+class Air(eqx.Module):
+    """The air at the centre of buoyancy B at one instant.
+
+    Attributes
+    ----------
+    density : float
+        ρ [kg/m³].
+    wind : Float[Array, "3"]
+        Velocity of the air the ship feels, ground effect included, ground axes [m/s].
+    wind_rate_ship : Float[Array, "3"]
+        (∂t + v·∇) v_w along the ship's path, ground axes [m/s²].
+    wind_rate_fluid : Float[Array, "3"]
+        (∂t + v_w·∇) v_w, the air's own acceleration, ground axes [m/s²].
+    """
+
+    density: Float[Array, ""]
+    wind: Float[Array, "3"]
+    wind_rate_ship: Float[Array, "3"]
+    wind_rate_fluid: Float[Array, "3"]
+
+
+class Environment(eqx.Module):
+    """Fields of the flight.
+
+    Attributes
+    ----------
+    gravity : Float[Array, "3"]
+        Acceleration of gravity g, ground axes [m/s²].
+    atmosphere : AbstractAtmosphere
+        Gives ρ from altitude.
+    wind : AbstractWind
+        Steady wind.
+    gusts : tuple of CosineGust
+        Added to the wind.
+    ground_effect : GroundEffect or None
+        Extra vertical wind, or nothing.
+    ground : float
+        Down coordinate of the ground [m].
+    """
+
+    gravity: Float[Array, "3"]
+    atmosphere: AbstractAtmosphere
+    wind: AbstractWind
+    gusts: tuple[CosineGust, ...]
+    ground_effect: GroundEffect | None
+    ground: Float[Array, ""]
+
+    def density_at(self, position: Float[Array, "3"]) -> Float[Array, ""]:
+        """Return ρ [kg/m³] at a position, ground axes [m]."""
+        return self.atmosphere.density(-position[2])
+
+    def wind_at(self, position: Float[Array, "3"], time: Float[Array, ""]) -> Float[Array, "3"]:
+        """Return wind and gusts [m/s], ground axes, at a position [m] and time [s]."""
+        total = self.wind.velocity(position)
+        for gust in self.gusts:
+            total = total + gust.velocity(time)
+        return total
+
+    def air(
+        self, position: Float[Array, "3"], velocity: Float[Array, "3"], time: Float[Array, ""]
+    ) -> Air:
+        """Return the air met at B.
+
+        Parameters
+        ----------
+        position, velocity : Float[Array, "3"]
+            Of B over the ground, ground axes [m, m/s].
+        time : Float[Array, ""]
+            t [s].
+        """
+        one = jnp.ones_like(time)
+        wind, along_ship = jax.jvp(self.wind_at, (position, time), (velocity, one))
+        _, along_fluid = jax.jvp(self.wind_at, (position, time), (wind, one))
+        felt = wind
+        if self.ground_effect is not None:
+            felt = wind + self.ground_effect.velocity(position, velocity)
+        return Air(self.density_at(position), felt, along_ship, along_fluid)
+
+    def corner_times(self) -> Float[Array, "n"]:
+        """Return the times [s] at which a gust begins or ends, sorted."""
+        if not self.gusts:
+            return jnp.zeros(0)
+        return jnp.sort(jnp.concatenate([gust.corners() for gust in self.gusts]))

@@ -1,0 +1,67 @@
+"""State of the ship and command to it, as types. Depends on: spatial."""
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+STATE_NAMES = ("u", "v", "w", "p", "q", "r", "phi", "theta", "psi", "north", "east", "down")
+"""Names of the twelve states, in the order of the vector."""
+
+
+class State(eqx.Module):
+    """Motion of the body frame, origin P.
+
+    Attributes
+    ----------
+    velocity : Float[Array, "3"]
+        *Ground* velocity of P, (U, V, W), body axes [m/s].
+    rates : Float[Array, "3"]
+        ω = (p, q, r), body axes [rad/s].
+    attitude : Float[Array, "3"]
+        Euler angles φ, θ, ψ, 3-2-1 [rad].
+    position : Float[Array, "3"]
+        x_P = (N, E, D), ground axes, origin at the first anchor [m].
+    """
+
+    velocity: Float[Array, "3"]
+    rates: Float[Array, "3"]
+    attitude: Float[Array, "3"]
+    position: Float[Array, "3"]
+
+    def as_vector(self) -> Float[Array, "12"]:
+        """Return the twelve states as one vector, in the order of `STATE_NAMES`."""
+        return jnp.concatenate([self.velocity, self.rates, self.attitude, self.position])
+
+    @classmethod
+    def from_vector(cls, vector: Float[Array, "12"]) -> "State":
+        """Return the state of a vector of twelve."""
+        return cls(vector[0:3], vector[3:6], vector[6:9], vector[9:12])
+
+    @classmethod
+    def at_rest(cls, position: Float[Array, "3"], attitude: Float[Array, "3"] | None = None) -> "State":
+        """Return a ship at rest over the ground.
+
+        Parameters
+        ----------
+        position : Float[Array, "3"]
+            x_P, ground axes [m].
+        attitude : Float[Array, "3"], optional
+            φ, θ, ψ [rad]; level and pointing north if not given.
+        """
+        zero = jnp.zeros(3)
+        return cls(zero, zero, zero if attitude is None else jnp.asarray(attitude), jnp.asarray(position))
+
+
+class Command(eqx.Module):
+    """What the laws ask of the ship, after clipping.
+
+    Attributes
+    ----------
+    throttle : Float[Array, "thrusters"]
+        δ [-].
+    deflection : Float[Array, "fins"]
+        Deflection of each fin [rad].
+    """
+
+    throttle: Float[Array, "thrusters"]
+    deflection: Float[Array, "fins"]

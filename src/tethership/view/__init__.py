@@ -1,0 +1,1 @@
+"""Plots: they draw the data they are given."""
