@@ -13,7 +13,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-import optimistix
+import scipy.optimize
 from jaxtyping import Array, Float
 
 from tethership.analysis.unknowns import Unknowns, find_unknowns
@@ -112,36 +112,43 @@ class _Problem(eqx.Module):
         return sum((load.as_vector() for load in loads.values()), -left)
 
 
-def _solve(problem: _Problem) -> Float[Array, "unknowns"]:
-    """Return the values of the unknowns: Levenberg–Marquardt, then Newton steps of least norm."""
+@eqx.filter_jit
+def _balance(problem: _Problem, values: Float[Array, "unknowns"]) -> tuple[Array, Array]:
+    """Return the residual in units of 1e-3 of the weight, and its exact Jacobian."""
     unit = 1e-3 * problem.plant.ship.gravity.mass * STANDARD_GRAVITY
-    effort = EFFORT * problem.unknowns.effort
 
-    def balance(values: Float[Array, "unknowns"]) -> Float[Array, "6"]:
-        return problem.residual(*problem.unpack(values)) / unit
+    def balance(x: Float[Array, "unknowns"]) -> Float[Array, "6"]:
+        return problem.residual(*problem.unpack(x)) / unit
 
-    def misfit(values: Float[Array, "unknowns"], args: None) -> tuple[Array, Array]:
-        return balance(values), effort * values
+    return balance(values), jax.jacfwd(balance)(values)
 
-    start = problem.unknowns.taken(problem.base)
-    found = optimistix.least_squares(
-        misfit,
-        optimistix.LevenbergMarquardt(rtol=1e-10, atol=1e-10),
-        start,
-        max_steps=256,
-        throw=False,
-    ).value
+
+def _solve(problem: _Problem) -> np.ndarray:
+    """Return the values of the unknowns: least squares with scipy, then Newton steps of least norm."""
+    effort = np.asarray(EFFORT * problem.unknowns.effort)
+
+    def misfit(values: np.ndarray) -> np.ndarray:
+        return np.concatenate([np.asarray(_balance(problem, values)[0]), effort * values])
+
+    def slope(values: np.ndarray) -> np.ndarray:
+        return np.vstack([np.asarray(_balance(problem, values)[1]), np.diag(effort)])
+
+    start = np.asarray(problem.unknowns.taken(problem.base))
+    found = scipy.optimize.least_squares(
+        misfit, start, jac=slope, xtol=1e-12, ftol=1e-12, gtol=1e-12, max_nfev=200  # pyright: ignore[reportArgumentType]
+    ).x
     for _ in range(3):
-        slope = jax.jacfwd(balance)(found)
-        step = jnp.linalg.lstsq(slope, balance(found), rcond=1e-9)[0]
-        found = found - jnp.where(jnp.all(jnp.isfinite(step)), step, 0.0)
+        residual, jacobian = map(np.asarray, _balance(problem, found))
+        if not np.isfinite(jacobian).all():
+            break
+        found = found - np.linalg.pinv(jacobian, rcond=1e-9) @ residual
     return found
 
 
 @eqx.filter_jit
-def _run(problem: _Problem) -> tuple[State, Command, Array, Array, Array]:
+def _described(problem: _Problem, values: Float[Array, "unknowns"]) -> tuple[State, Command, Array, Array, Array]:
     """Return state, command, tensions, and the residual without and with clipped throttles."""
-    state, command = problem.unpack(_solve(problem))
+    state, command = problem.unpack(values)
     plant = problem.plant
     cables = plant.cable_states(jnp.zeros(()), state, plant.initial_lengths())
     tension = jnp.stack([safe_norm(c.ship) for c in cables]) if cables else jnp.zeros(0)
@@ -149,6 +156,7 @@ def _run(problem: _Problem) -> tuple[State, Command, Array, Array, Array]:
     return state, command, tension, problem.residual(state, command), problem.residual(state, clipped)
 
 
+@eqx.filter_jit
 def start_position(config: TrimConfig, plant: TetheredAirship) -> Float[Array, "3"]:
     """Return x_P [m], ground axes, from which a trim begins; arguments are the scenario's."""
     if config.position is not None:
@@ -165,6 +173,11 @@ def start_position(config: TrimConfig, plant: TetheredAirship) -> Float[Array, "
     reach = jnp.asarray(config.elongation) * cable.length
     rotation = rotation_matrix(jnp.asarray(config.attitude))
     return cable.anchor + reach * direction - rotation @ cable.tether_point
+
+
+def _arrays(config: TrimConfig) -> TrimConfig:
+    """Return the settings with numbers as arrays, which do not recompile when they change."""
+    return jax.tree.map(lambda leaf: np.asarray(leaf) if isinstance(leaf, float) else leaf, config)
 
 
 def trim(
@@ -209,18 +222,18 @@ def trim(
             f"trim: the tether point is held, so north, east and down follow; take them out of {list(names)} "
             'or set trim.hold = "reference_point"'
         )
-    base = jnp.concatenate(
+    base = np.concatenate(
         [
-            jnp.asarray(config.velocity),
-            jnp.zeros(3),
-            jnp.asarray(config.attitude),
-            start_position(config, plant),
-            jnp.zeros(len(thrusters) + len(fins)),
+            config.velocity,
+            np.zeros(3),
+            config.attitude,
+            start_position(_arrays(config), plant),
+            np.zeros(len(thrusters) + len(fins)),
         ]
     )
     chosen, base = find_unknowns(names, dict(fixed or {}), thrusters, fins, base)
-    state, command, tension, free, clipped = _run(_Problem(plant, base, chosen, hold))
-    point = _judged(plant, thrusters, state, command, tension, free, clipped)
+    problem = _Problem(plant, base, chosen, hold)
+    point = _judged(plant, thrusters, *_described(problem, _solve(problem)))
     if throw and point.outcome is TrimOutcome.no_equilibrium:
         raise SolveError(f"{point.outcome.value} Residual: {np.asarray(point.residual)} N, N m")
     return point

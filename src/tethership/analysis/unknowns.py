@@ -3,7 +3,6 @@
 import difflib
 
 import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
@@ -31,9 +30,9 @@ class Unknowns(eqx.Module):
     scale: Float[Array, "unknowns"]
     effort: Float[Array, "unknowns"]
 
-    def taken(self, everything: Float[Array, "n"]) -> Float[Array, "unknowns"]:
+    def taken(self, everything: np.ndarray) -> np.ndarray:
         """Return the chosen quantities in their units."""
-        return everything[np.array(self.index, dtype=int)] / self.scale
+        return np.asarray(everything)[list(self.index)] / self.scale
 
     def placed(
         self, everything: Float[Array, "n"], values: Float[Array, "unknowns"]
@@ -47,8 +46,8 @@ def find_unknowns(
     fixed: dict[str, float],
     thrusters: list[str],
     fins: list[str],
-    base: Float[Array, "n"],
-) -> tuple[Unknowns, Float[Array, "n"]]:
+    base: np.ndarray,
+) -> tuple[Unknowns, np.ndarray]:
     """Return the choice, and all quantities with the fixed values in place.
 
     Raises
@@ -65,12 +64,12 @@ def find_unknowns(
     if not index:
         raise ConfigError("trim: nothing is looked for; name states, thrusters or `throttle` as unknowns")
     for name, value in fixed.items():
-        base = base.at[_place(name, every, [])].set(value)
+        base[_place(name, every, [])] = value
     index = sorted(set(index))
     scales = [*STATE_SCALES, *[1.0] * (len(thrusters) + len(fins))]
     efforts = [0.0] * 12 + [1.0] * (len(thrusters) + len(fins))
     chosen = Unknowns(
-        tuple(index), jnp.asarray([scales[i] for i in index]), jnp.asarray([efforts[i] for i in index])
+        tuple(index), np.asarray([scales[i] for i in index]), np.asarray([efforts[i] for i in index])
     )
     return chosen, base
 

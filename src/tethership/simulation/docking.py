@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 import diffrax
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -50,14 +51,17 @@ def start_state(scenario: Scenario, trimmed: State) -> State:
     trimmed : State
         State at trim.
     """
-    start = scenario.config.start
-    attitude = trimmed.attitude + jnp.asarray(start.attitude_offset)
-    position = trimmed.position
-    if start.hold == "tether_point" and scenario.system.cables:
-        point = scenario.system.cables[0].tether_point
-        before = rotation_matrix(trimmed.attitude)
-        position = position + (before - rotation_matrix(attitude)) @ point
-    return State(trimmed.velocity, trimmed.rates, attitude, position)
+    start, cables = scenario.config.start, scenario.system.cables
+    held = cables[0].tether_point if start.hold == "tether_point" and cables else np.zeros(3)
+    return _turned(trimmed, np.asarray(start.attitude_offset), held)
+
+
+@jax.jit
+def _turned(state: State, offset: Float[Array, "3"], held: Float[Array, "3"]) -> State:
+    """Return a state with its attitude moved [rad] about a point of the body [m]."""
+    attitude = state.attitude + offset
+    moved = (rotation_matrix(state.attitude) - rotation_matrix(attitude)) @ held
+    return State(state.velocity, state.rates, attitude, state.position + moved)
 
 
 def _stop_conditions(scenario: Scenario) -> StopConditions:
@@ -69,9 +73,16 @@ def _stop_conditions(scenario: Scenario) -> StopConditions:
     )
 
 
-def _check_start(loop: ClosedLoop, stop: StopConditions, vector: Float[Array, "n"]) -> None:
+@eqx.filter_jit
+def _begin(loop: ClosedLoop, stop: StopConditions, state: State) -> tuple[Array, Array]:
+    """Return the integrator's vector at the start, and the margins there."""
+    vector = loop.initial(state)
+    return vector, stop.margins(loop, jnp.zeros(()), vector)
+
+
+def _check_start(margins: Float[Array, "4"]) -> None:
     """Raise ConfigError where the flight would be over before it begins."""
-    docked, broken, contact, pitch = np.asarray(stop.margins(loop, jnp.zeros(()), vector))
+    docked, broken, contact, pitch = np.asarray(margins)
     if broken <= 0:
         raise ConfigError(
             f"the start is beyond breaking: a cable is at {1 - broken:.2f} of its breaking force; lengthen the cable "
@@ -127,8 +138,8 @@ def dock(
     law = scenario.law(names, active).joined(own_laws or {})
     loop = ClosedLoop(scenario.system, law, point.command)
     stop = _stop_conditions(scenario)
-    vector = loop.initial(start_state(scenario, point.state))
-    _check_start(loop, stop, vector)
+    vector, margins = _begin(loop, stop, start_state(scenario, point.state))
+    _check_start(margins)
     flown = fly(loop, vector, stop, config, scenario.config.stop.time_limit, progress)
     if throw and not flown.outcome.is_answer:
         raise SolveError(flown.outcome.value)
@@ -138,7 +149,7 @@ def dock(
         "layers": [*names, *(own_laws or {})],
         "sas": active,
         "formulation": scenario.formulation,
-        "limits": dict(scenario.config.limits),
+        "limits": [value for _, value in scenario.config.limits],
         "scenario_name": scenario.name,
         "scenario": scenario.document,
         "solver": config.model_dump(mode="json"),

@@ -49,7 +49,7 @@ class Flight:
         """Metrics of Tables 3–6, SI, θ_rms in degrees."""
         arrays = {str(name): np.asarray(value) for name, value in self.data.data_vars.items()}
         arrays["time"] = self.data["time"].to_numpy()
-        return docking_metrics(arrays, list(self.attributes["limits"].values()))
+        return docking_metrics(arrays, self.attributes["limits"])
 
     @property
     def docking_time(self) -> float | None:

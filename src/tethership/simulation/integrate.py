@@ -151,18 +151,20 @@ def fly_segment(
     sample_times : Float[Array, "samples"]
         When to sample [s].
     """
+    # Traced once here; the integrator would trace them anew at every use.
+    field = eqx.filter_closure_convert(lambda t, y, _: loop.vector_field(t, y), start, vector, None)
+    margin = eqx.filter_closure_convert(lambda t, y: stop.least(loop, t, y), start, vector)
     solution = diffrax.diffeqsolve(
-        diffrax.ODETerm(lambda t, y, args: args[0].vector_field(t, y)),
+        diffrax.ODETerm(field),
         METHODS[stepping.method](),
         start,
         end,
         jnp.minimum(FIRST_STEP, stepping.largest_step) if stepping.adaptive else stepping.largest_step,
         vector,
-        args=(loop, stop),
         saveat=diffrax.SaveAt(t1=True, dense=True),
         stepsize_controller=_controller(stepping, loop.plant.environment.corner_times()),
         event=diffrax.Event(
-            lambda t, y, args, **_: args[1].least(args[0], t, y),
+            lambda t, y, args, **_: margin(t, y),
             optimistix.Bisection(rtol=1e-12, atol=1e-10),
         ),
         max_steps=SEGMENT_STEPS,

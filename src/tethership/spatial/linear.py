@@ -1,9 +1,13 @@
 """Small dense linear algebra that stays inside one compiled kernel. Depends on nothing."""
 
+from functools import partial
+
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 
+@partial(jax.jit, inline=True)
 def solve_symmetric(matrix: Float[Array, "n n"], right: Float[Array, "n"]) -> Float[Array, "n"]:
     """Return x with M x = b for a symmetric positive definite M; units follow from M and b.
 

@@ -18,6 +18,8 @@ For ε = 0 (*) is sinh z / z = √(L² − y₃²)/|d_⊥| and this is Eqs. 20�
 The root is differentiated by the implicit function theorem, never through the iterations.
 """
 
+from functools import partial
+
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
@@ -53,6 +55,7 @@ def _guess(
     return jnp.maximum(start, _TINY)
 
 
+@partial(jax.jit, inline=True)
 def _newton_step(
     z: Float[Array, ""],
     hanging: Float[Array, ""],
@@ -94,6 +97,7 @@ def _newton_step(
 
 
 @jax.custom_jvp
+@partial(jax.jit, inline=True)
 def root(
     across: Float[Array, ""], along: Float[Array, ""], stretch: Float[Array, ""]
 ) -> Float[Array, ""]:
