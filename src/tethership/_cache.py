@@ -11,7 +11,7 @@ def use_compilation_cache() -> None:
 
     `JAX_COMPILATION_CACHE_DIR` names another folder; set empty, it switches the cache off.
     """
-    if "JAX_COMPILATION_CACHE_DIR" in os.environ or jax.config.jax_compilation_cache_dir:
+    if "JAX_COMPILATION_CACHE_DIR" in os.environ or jax.config.values["jax_compilation_cache_dir"]:
         return
     jax.config.update("jax_compilation_cache_dir", platformdirs.user_cache_dir("tethership") + "/jax")
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)

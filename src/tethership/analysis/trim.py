@@ -1,9 +1,4 @@
-"""Trim: the equilibrium of a ship, with any unknowns against any fixed quantities. Depends on: system, scenario.
-
-The residual is the sum of all loads less the gyroscopic term, (f, m) about P in body axes; it vanishes in steady
-flight. Thrust is *not* clipped while solving: a throttle beyond its limit is the answer to how much is missing,
-and is reported as saturation.
-"""
+"""Trim: the equilibrium of a ship, with any unknowns against any fixed quantities. Depends on: system, scenario."""
 
 import enum
 from collections.abc import Mapping, Sequence
@@ -13,22 +8,15 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-import scipy.optimize
 from jaxtyping import Array, Float
 
-from tethership.analysis.unknowns import Unknowns, find_unknowns
+from tethership.analysis.equilibrium import RESIDUAL_LIMIT, Problem, described, solve
+from tethership.analysis.unknowns import find_unknowns
 from tethership.errors import ConfigError, SolveError
 from tethership.scenario import Scenario
 from tethership.scenario.schema import TrimConfig
-from tethership.spatial import STANDARD_GRAVITY, rotation_matrix, safe_norm
+from tethership.spatial import STANDARD_GRAVITY, rotation_matrix
 from tethership.system import Command, State, TetheredAirship
-
-RESIDUAL_LIMIT = 1e-6
-"""Largest residual of an equilibrium, as a fraction of 1 N and 1 N m per newton of weight."""
-
-EFFORT = 1e-3
-"""Weight of the throttles beside the residual, which is in units of 1e-3 of the weight: small enough to move the
-minimum-norm solution by less than 1e-7; a last Newton step then takes the residual to rounding."""
 
 
 class TrimOutcome(enum.Enum):
@@ -72,90 +60,6 @@ class TrimPoint(NamedTuple):
     outcome: TrimOutcome
 
 
-class _Problem(eqx.Module):
-    """What the compiled solver needs.
-
-    Attributes
-    ----------
-    plant : TetheredAirship
-    base : Float[Array, "n"]
-        All quantities (12 states, throttles, deflections) with the fixed ones in place.
-    unknowns : Unknowns
-        Which of them are looked for.
-    hold_tether : bool
-        Whether the position follows the attitude so that the first tether point stays.
-    """
-
-    plant: TetheredAirship
-    base: Float[Array, "n"]
-    unknowns: Unknowns
-    hold_tether: bool = eqx.field(static=True)
-
-    def unpack(self, values: Float[Array, "unknowns"]) -> tuple[State, Command]:
-        """Return state and command for values of the unknowns, in units of their scales."""
-        ship = self.plant.ship
-        everything = self.unknowns.placed(self.base, values)
-        state = State.from_vector(everything[:12])
-        count = ship.thrusters.count
-        if self.hold_tether:
-            start = rotation_matrix(self.base[6:9])
-            moved = (start - rotation_matrix(state.attitude)) @ self.plant.cables[0].tether_point
-            state = State(state.velocity, state.rates, state.attitude, state.position + moved)
-        return state, Command(everything[12 : 12 + count], everything[12 + count :])
-
-    def residual(self, state: State, command: Command) -> Float[Array, "6"]:
-        """Return the unbalanced force and moment [N, N m]."""
-        plant, now = self.plant, jnp.zeros(())
-        cables = plant.cable_states(now, state, plant.initial_lengths())
-        loads = plant.wrenches(now, state, command, cables)
-        left = plant.ship.body.gyroscopic(state.velocity, state.rates).as_vector()
-        return sum((load.as_vector() for load in loads.values()), -left)
-
-
-@eqx.filter_jit
-def _balance(problem: _Problem, values: Float[Array, "unknowns"]) -> tuple[Array, Array]:
-    """Return the residual in units of 1e-3 of the weight, and its exact Jacobian."""
-    unit = 1e-3 * problem.plant.ship.gravity.mass * STANDARD_GRAVITY
-
-    def balance(x: Float[Array, "unknowns"]) -> Float[Array, "6"]:
-        return problem.residual(*problem.unpack(x)) / unit
-
-    return balance(values), jax.jacfwd(balance)(values)
-
-
-def _solve(problem: _Problem) -> np.ndarray:
-    """Return the values of the unknowns: least squares with scipy, then Newton steps of least norm."""
-    effort = np.asarray(EFFORT * problem.unknowns.effort)
-
-    def misfit(values: np.ndarray) -> np.ndarray:
-        return np.concatenate([np.asarray(_balance(problem, values)[0]), effort * values])
-
-    def slope(values: np.ndarray) -> np.ndarray:
-        return np.vstack([np.asarray(_balance(problem, values)[1]), np.diag(effort)])
-
-    start = np.asarray(problem.unknowns.taken(problem.base))
-    found = scipy.optimize.least_squares(
-        misfit, start, jac=slope, xtol=1e-12, ftol=1e-12, gtol=1e-12, max_nfev=200  # pyright: ignore[reportArgumentType]
-    ).x
-    for _ in range(3):
-        residual, jacobian = map(np.asarray, _balance(problem, found))
-        if not np.isfinite(jacobian).all():
-            break
-        found = found - np.linalg.pinv(jacobian, rcond=1e-9) @ residual
-    return found
-
-
-@eqx.filter_jit
-def _described(problem: _Problem, values: Float[Array, "unknowns"]) -> tuple[State, Command, Array, Array, Array]:
-    """Return state, command, tensions, and the residual without and with clipped throttles."""
-    state, command = problem.unpack(values)
-    plant = problem.plant
-    cables = plant.cable_states(jnp.zeros(()), state, plant.initial_lengths())
-    tension = jnp.stack([safe_norm(c.ship) for c in cables]) if cables else jnp.zeros(0)
-    clipped = Command(plant.ship.thrusters.saturate(command.throttle), command.deflection)
-    return state, command, tension, problem.residual(state, command), problem.residual(state, clipped)
-
-
 @eqx.filter_jit
 def start_position(config: TrimConfig, plant: TetheredAirship) -> Float[Array, "3"]:
     """Return x_P [m], ground axes, from which a trim begins; arguments are the scenario's."""
@@ -193,7 +97,8 @@ def trim(
     scenario : Scenario
         From `load_scenario`; its `trim` table holds the defaults.
     unknowns : sequence of str, optional
-        What is looked for: states (`u` … `down`), names of thrusters or fins, `throttle`, `deflection`.
+        What is looked for: `velocity_north` … `down` (see `unknowns.QUANTITIES`), names of thrusters
+        or fins, `throttle`, `deflection`.
     fixed : mapping, optional
         Values of quantities that are not looked for, or where the search starts [SI, rad].
     throw : bool
@@ -232,8 +137,8 @@ def trim(
         ]
     )
     chosen, base = find_unknowns(names, dict(fixed or {}), thrusters, fins, base)
-    problem = _Problem(plant, base, chosen, hold)
-    point = _judged(plant, thrusters, *_described(problem, _solve(problem)))
+    problem = Problem(plant, jnp.asarray(base), chosen, hold)
+    point = _judged(plant, thrusters, *described(problem, jnp.asarray(solve(problem))))
     if throw and point.outcome is TrimOutcome.no_equilibrium:
         raise SolveError(f"{point.outcome.value} Residual: {np.asarray(point.residual)} N, N m")
     return point

@@ -3,18 +3,26 @@
 import difflib
 
 import equinox as eqx
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
 from tethership.errors import ConfigError
 from tethership.system.state import STATE_NAMES
 
-STATE_SCALES = (1.0, 1.0, 1.0, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 1.0, 1.0, 1.0)
-"""Unit in which each state is looked for [m/s, rad/s, rad, m]."""
+QUANTITIES = ("velocity_north", "velocity_east", "velocity_down", *STATE_NAMES[3:])
+"""Names of the motion's twelve quantities: ground velocity of P in *ground* axes, then as the states. In ground axes a
+level flight stays level whatever the attitude that is looked for."""
+
+SCALES = (1.0, 1.0, 1.0, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 1.0, 1.0, 1.0)
+"""Unit in which each is looked for [m/s, rad/s, rad, m]."""
+
+LARGEST = {6: np.pi / 2.0, 7: np.deg2rad(80.0)}
+"""Largest |φ| and |θ| that a trim looks at [rad]: beyond them Euler angles fail."""
 
 
 class Unknowns(eqx.Module):
-    """A choice among all quantities (12 states, throttles, deflections).
+    """A choice among all quantities (12 of the motion, throttles, deflections).
 
     Attributes
     ----------
@@ -30,13 +38,16 @@ class Unknowns(eqx.Module):
     scale: Float[Array, "unknowns"]
     effort: Float[Array, "unknowns"]
 
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the least and largest value of each in its unit: roll within ±90° and pitch within ±80°."""
+        reach = np.array([LARGEST.get(i, np.inf) for i in self.index]) / np.asarray(self.scale)
+        return -reach, reach
+
     def taken(self, everything: np.ndarray) -> np.ndarray:
         """Return the chosen quantities in their units."""
-        return np.asarray(everything)[list(self.index)] / self.scale
+        return everything[list(self.index)] / np.asarray(self.scale)
 
-    def placed(
-        self, everything: Float[Array, "n"], values: Float[Array, "unknowns"]
-    ) -> Float[Array, "n"]:
+    def placed(self, everything: Float[Array, "n"], values: Float[Array, "unknowns"]) -> Float[Array, "n"]:
         """Return all quantities with the chosen ones replaced."""
         return everything.at[np.array(self.index, dtype=int)].set(values * self.scale)
 
@@ -53,24 +64,22 @@ def find_unknowns(
     Raises
     ------
     ConfigError
-        A name is no state, thruster or fin, or nothing is looked for.
+        A name is no quantity, thruster or fin, or nothing is looked for.
     """
-    every = [*STATE_NAMES, *thrusters, *fins]
+    every = [*QUANTITIES, *thrusters, *fins]
     groups = {"throttle": thrusters, "deflection": fins}
     index: list[int] = []
     for name in names:
         members = groups.get(name, [name])
         index += [_place(member, every, list(groups)) for member in members]
     if not index:
-        raise ConfigError("trim: nothing is looked for; name states, thrusters or `throttle` as unknowns")
+        raise ConfigError("trim: nothing is looked for; name quantities, thrusters or `throttle` as unknowns")
     for name, value in fixed.items():
         base[_place(name, every, [])] = value
     index = sorted(set(index))
-    scales = [*STATE_SCALES, *[1.0] * (len(thrusters) + len(fins))]
+    scales = [*SCALES, *[1.0] * (len(thrusters) + len(fins))]
     efforts = [0.0] * 12 + [1.0] * (len(thrusters) + len(fins))
-    chosen = Unknowns(
-        tuple(index), np.asarray([scales[i] for i in index]), np.asarray([efforts[i] for i in index])
-    )
+    chosen = Unknowns(tuple(index), jnp.asarray([scales[i] for i in index]), jnp.asarray([efforts[i] for i in index]))
     return chosen, base
 
 

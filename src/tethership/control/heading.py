@@ -64,7 +64,5 @@ class HeadingLaw(AbstractLaw):
         angle = misalignment(measurement.attitude, offset)
         fading = self.fade_radius > 0
         distance = safe_norm(offset[:2])
-        weight = jnp.where(
-            fading, jnp.minimum(distance / jnp.where(fading, self.fade_radius, 1.0), 1.0), 1.0
-        )
+        weight = jnp.where(fading, jnp.minimum(distance / jnp.where(fading, self.fade_radius, 1.0), 1.0), 1.0)
         return Correction(throttle=self.share * self.gain * weight * angle), memory

@@ -68,9 +68,7 @@ class AbstractLaw(eqx.Module):
     """A control law."""
 
     @abc.abstractmethod
-    def __call__(
-        self, time: Float[Array, ""], measurement: Measurement, memory: Any
-    ) -> tuple[Correction, Any]:
+    def __call__(self, time: Float[Array, ""], measurement: Measurement, memory: Any) -> tuple[Correction, Any]:
         """Return the correction and the time derivative of the memory.
 
         Parameters

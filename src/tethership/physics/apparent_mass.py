@@ -59,11 +59,7 @@ def lamb1932(fineness: Float[Array, ""]) -> LambFactors:
     alpha = 2.0 * (1.0 - squared) / eccentricity**3 * (0.5 * logarithm - eccentricity)
     beta = 1.0 / squared - (1.0 - squared) / (2.0 * eccentricity**3) * logarithm
     difference = beta - alpha
-    rotational = (
-        squared**2
-        * difference
-        / ((2.0 - squared) * (2.0 * squared - (2.0 - squared) * difference))
-    )
+    rotational = squared**2 * difference / ((2.0 - squared) * (2.0 * squared - (2.0 - squared) * difference))
     return LambFactors(alpha / (2.0 - alpha), beta / (2.0 - beta), rotational)
 
 

@@ -150,9 +150,7 @@ class AbstractEnvelope(eqx.Module):
         )
         return Wrench(force, moment)
 
-    def wrench(
-        self, density: Float[Array, ""], air_velocity: Float[Array, "3"], rates: Float[Array, "3"]
-    ) -> Wrench:
+    def wrench(self, density: Float[Array, ""], air_velocity: Float[Array, "3"], rates: Float[Array, "3"]) -> Wrench:
         """Return the hull's wrench about P, body axes [N, N m].
 
         Parameters

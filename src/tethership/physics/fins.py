@@ -83,7 +83,5 @@ class Fins(eqx.Module):
         nose = jnp.array([1.0, 0.0, 0.0])
         force_centre = -0.5 * density * (attached[:, None] * self.normal + friction[:, None] * nose)
         force_cross = -0.5 * density * separated[:, None] * self.normal
-        moment = jnp.cross(self.aerodynamic_centre, force_centre) + jnp.cross(
-            self.cross_flow_centre, force_cross
-        )
+        moment = jnp.cross(self.aerodynamic_centre, force_centre) + jnp.cross(self.cross_flow_centre, force_cross)
         return Wrench(jnp.sum(force_centre + force_cross, axis=0), jnp.sum(moment, axis=0))

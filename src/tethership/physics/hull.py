@@ -114,9 +114,7 @@ class BodyOfRevolution(eqx.Module):
         return Strips(station, self.radius(station), width)
 
 
-def gertler(
-    length: Float[Array, ""], diameter: Float[Array, ""], coefficients: Float[Array, "6"]
-) -> BodyOfRevolution:
+def gertler(length: Float[Array, ""], diameter: Float[Array, ""], coefficients: Float[Array, "6"]) -> BodyOfRevolution:
     """Return a Gertler hull from length L [m], diameter D [m] and coefficients a₁ … a₆ [-]."""
     return BodyOfRevolution(jnp.asarray(length), jnp.asarray(diameter), jnp.asarray(coefficients))
 

@@ -109,6 +109,6 @@ def docking_metrics(flight: dict[str, Array], limits: list[float]) -> dict[str, 
         "theta_rms": float(np.degrees(np.sqrt(mean(time, pitch**2)))),
         "clearance_min": float(flight["clearance"].min()),
         "cable_clearance_min": float(sag.min()) if cables else None,
-        "saturated_seconds": float(mean(time, flight["saturated"].any(axis=1)) * (time[-1] - time[0])),
+        "saturated_seconds": float(mean(time, flight["saturated"].max(axis=1, initial=0.0)) * (time[-1] - time[0])),
         "misalignment_jumps": jumps(chi[:, 0]) if cables else 0,
     }

@@ -17,9 +17,7 @@ KIND = "tethership flight"
 """What a flight file says it is."""
 
 
-def to_dataset(
-    arrays: dict[str, np.ndarray], names: dict[str, list[str]], attributes: dict[str, Any]
-) -> xr.Dataset:
+def to_dataset(arrays: dict[str, np.ndarray], names: dict[str, list[str]], attributes: dict[str, Any]) -> xr.Dataset:
     """Return a labelled dataset of a flight.
 
     Parameters

@@ -1,9 +1,7 @@
-"""From validated configuration to the modules of the plant. Depends on: system, physics, scenario.schema.
+"""From a validated scenario to the plant. Depends on: system, physics, scenario.schema, scenario.build_ship.
 
 Everything is written with jax.numpy, so that a plant can be differentiated with respect to its numbers.
 """
-
-from functools import partial
 
 import equinox as eqx
 import jax
@@ -11,31 +9,13 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from tethership.physics.apparent_mass import (
-    AbstractApparentMass,
-    KirchhoffApparentMass,
-    LambFactors,
-    PublishedApparentMass,
-    lamb1932,
-)
 from tethership.physics.atmosphere import AbstractAtmosphere, ConstantAtmosphere, StandardAtmosphere
-from tethership.physics.buoyancy import Buoyancy
 from tethership.physics.cable import AbstractTensionLaw, CableLoad, ElasticCatenary, PublishedTension
-from tethership.physics.envelope import (
-    AbstractEnvelope,
-    ConsistentEnvelope,
-    PublishedEnvelope,
-    SliceIntegrals,
-)
-from tethership.physics.fins import Fins
-from tethership.physics.gravity import Gravity
 from tethership.physics.ground_effect import GroundEffect
 from tethership.physics.gust import CosineGust
-from tethership.physics.hull import BodyOfRevolution, Strips, ellipsoid, gertler, gertler_from_shape
-from tethership.physics.rigid_body import RigidBody
-from tethership.physics.thrusters import Thrusters
 from tethership.physics.winch import Winch
 from tethership.physics.wind import AbstractWind, PowerLawWind, UniformWind
+from tethership.scenario.build_ship import build_hull, build_ship, slice_integrals
 from tethership.scenario.schema import (
     CableConfig,
     ConstantAir,
@@ -44,195 +24,10 @@ from tethership.scenario.schema import (
     ScenarioConfig,
     UniformWindConfig,
 )
-from tethership.scenario.vehicle_schema import (
-    EllipsoidHull,
-    GertlerHull,
-    HullConfig,
-    LambConfig,
-    VehicleConfig,
-)
 from tethership.spatial import STANDARD_GRAVITY
-from tethership.system import Airship, Cable, Environment, TetheredAirship
+from tethership.system import Cable, Environment, TetheredAirship
 
-STRIPS = 12
-"""Strips of the cross-flow drag: 1e-9 of ∫2r and 2e-8 of ∫2r|x|³ (convergence test of the hull)."""
-
-OUTLINE = 41
-"""Stations at which the hull's outline is kept for clearance and drawing."""
-
-
-def build_hull(config: HullConfig) -> BodyOfRevolution:
-    """Return the hull's shape."""
-    match config:
-        case GertlerHull():
-            return gertler(config.length, config.diameter, jnp.array(config.coefficients))
-        case EllipsoidHull():
-            return ellipsoid(config.length, config.diameter)
-        case _:
-            return gertler_from_shape(
-                config.length,
-                config.diameter,
-                config.largest_section,
-                config.nose_radius,
-                config.tail_radius,
-                config.prismatic_coefficient,
-            )
-
-
-def _factors(config: VehicleConfig) -> tuple[LambFactors, Array]:
-    """Return Lamb's factors [-] and the squared radii of gyration about pitch and yaw [m²]."""
-    apparent = config.apparent_mass
-    if isinstance(apparent, LambConfig):
-        fineness = config.hull.length / config.hull.diameter if apparent.fineness is None else apparent.fineness
-        gyration = (config.hull.length**2 + config.hull.diameter**2) / 20.0
-        return lamb1932(jnp.asarray(fineness)), jnp.stack([jnp.asarray(gyration)] * 2)
-    factors = LambFactors(*map(jnp.asarray, (apparent.k1, apparent.k2, apparent.k_rotational)))
-    return factors, jnp.asarray(apparent.gyration_radius_squared)
-
-
-def _apparent_mass(
-    config: VehicleConfig, formulation: str, centre: Float[Array, "3"]
-) -> AbstractApparentMass:
-    factors, gyration = _factors(config)
-    volume = jnp.asarray(config.buoyancy.volume)
-    kind = KirchhoffApparentMass if formulation == "consistent" else PublishedApparentMass
-    return kind(
-        volume=volume,
-        centre=centre,
-        translational=volume * jnp.stack([factors.axial, factors.lateral, factors.lateral]),
-        rotational=volume
-        * jnp.stack([jnp.zeros(()), factors.rotational * gyration[0], factors.rotational * gyration[1]]),
-    )
-
-
-def slice_integrals(
-    hull: BodyOfRevolution, centre: Float[Array, ""], start: Float[Array, ""], end: Float[Array, ""]
-) -> SliceIntegrals:
-    """Return the integrals of the hull between two stations [m] about the station `centre` [m].
-
-    Notes
-    -----
-    ∫A_x xⁿ dx over the part, by parts: −[A xⁿ] from nose side to tail side … − n∫A xⁿ⁻¹ dx.
-    """
-    area = jnp.stack([hull.area_moment(n, centre, start, end) for n in range(3)])
-    section_start = jnp.pi * hull.radius_squared(start)
-    section_end = jnp.pi * hull.radius_squared(end)
-    forward, aft = centre - start, centre - end
-    slope = jnp.stack(
-        [
-            section_start * forward**n - section_end * aft**n - (n * area[n - 1] if n else 0.0)
-            for n in range(3)
-        ]
-    )
-    return SliceIntegrals(area, slope)
-
-
-def _envelope(
-    config: VehicleConfig, hull: BodyOfRevolution, formulation: str, centre: Float[Array, "3"]
-) -> AbstractEnvelope:
-    factors, _ = _factors(config)
-    station = hull.centre()
-    nose, cut, tail = jnp.zeros(()), jnp.asarray(config.envelope.potential_length), hull.length
-    strips = hull.strips(nose, cut, STRIPS)
-    reference_area = jnp.asarray(config.buoyancy.volume) ** (2.0 / 3.0)
-    kind = ConsistentEnvelope if formulation == "consistent" else PublishedEnvelope
-    return kind(
-        centre=centre,
-        munk_factor=factors.lateral - factors.axial,
-        front=slice_integrals(hull, station, nose, cut),
-        tail=slice_integrals(hull, station, cut, tail),
-        slice_efficiency=jnp.asarray(config.envelope.slice_efficiency),
-        strip_position=station - strips.station,
-        strip_area=2.0 * strips.radius * strips.width,
-        cross_flow_drag_coefficient=jnp.asarray(config.envelope.cross_flow_drag_coefficient),
-        axial_drag_area=reference_area * config.envelope.axial_drag_coefficient,
-    )
-
-
-def _fins(config: VehicleConfig, shift: Float[Array, "3"]) -> Fins:
-    """Return the fins, positions from P."""
-    fins = config.fins
-    column = partial(_column, fins)
-    roll = column("roll")
-    span = jnp.stack([jnp.zeros_like(roll), jnp.cos(roll), jnp.sin(roll)], axis=1)
-    normal = jnp.stack([jnp.zeros_like(roll), -jnp.sin(roll), jnp.cos(roll)], axis=1)
-    axis = jnp.array([1.0, 0.0, 0.0])
-    centre_line = jnp.asarray(config.buoyancy.centre) * jnp.array([0.0, 1.0, 1.0])
-    base = centre_line + column("distance_from_axis")[:, None] * span - shift
-    area = column("area")
-    return Fins(
-        aerodynamic_centre=base + column("aerodynamic_station")[:, None] * axis,
-        cross_flow_centre=base + column("cross_flow_station")[:, None] * axis,
-        normal=normal,
-        lift_area=area * column("lift_slope") * column("efficiency"),
-        cross_flow_area=area * column("cross_flow_drag_coefficient"),
-        friction_area=area * column("axial_drag_coefficient"),
-    )
-
-
-def _column(rows: tuple, key: str) -> Float[Array, "n"]:
-    """Return one number of every row as an array."""
-    return jnp.asarray([getattr(row, key) for row in rows], dtype=float)
-
-
-def _thrusters(config: VehicleConfig, shift: Float[Array, "3"]) -> Thrusters:
-    rows = config.thrusters
-    lapse = [0.0 if row.speed_of_no_thrust is None else 1.0 / row.speed_of_no_thrust for row in rows]
-    return Thrusters(
-        position=jnp.asarray([row.position for row in rows], dtype=float).reshape(-1, 3) - shift,
-        direction=jnp.asarray([row.direction for row in rows], dtype=float).reshape(-1, 3),
-        nominal=_column(rows, "nominal_thrust"),
-        lowest_throttle=jnp.asarray([-1.0 if row.reversible else 0.0 for row in rows], dtype=float),
-        lapse=jnp.asarray(lapse, dtype=float),
-    )
-
-
-def _body(config: VehicleConfig, shift: Float[Array, "3"]) -> RigidBody:
-    """Return mass and inertia about P, by the parallel-axis theorem."""
-    mass = jnp.asarray(config.body.mass)
-    given = jnp.asarray(config.body.centre_of_gravity)
-    centre = given - shift
-    inertia = jnp.asarray(config.body.inertia) + mass * (_square(centre) - _square(given))
-    return RigidBody(mass, centre, inertia)
-
-
-def _square(point: Float[Array, "3"]) -> Float[Array, "3 3"]:
-    """Return |q|²I − q qᵀ [m²]."""
-    return jnp.dot(point, point) * jnp.eye(3) - jnp.outer(point, point)
-
-
-def build_ship(
-    config: VehicleConfig, formulation: str, reference_point: Float[Array, "3"] | None = None
-) -> Airship:
-    """Return the ship.
-
-    Parameters
-    ----------
-    config : VehicleConfig
-        A validated vehicle.
-    formulation : str
-        `consistent` or `published`.
-    reference_point : Float[Array, "3"], optional
-        P from the origin of the file's body axes [m]; the origin itself if not given.
-    """
-    shift = jnp.zeros(3) if reference_point is None else jnp.asarray(reference_point)
-    hull = build_hull(config.hull)
-    centre = jnp.asarray(config.buoyancy.centre) - shift
-    body = _body(config, shift)
-    outline = jnp.linspace(0.0, 1.0, OUTLINE) * hull.length
-    radius = hull.radius(outline)
-    width = jnp.full(OUTLINE, hull.length / (OUTLINE - 1))
-    return Airship(
-        body=body,
-        gravity=Gravity(body.mass, body.centre),
-        buoyancy=Buoyancy(jnp.asarray(config.buoyancy.volume), centre),
-        apparent_mass=_apparent_mass(config, formulation, centre),
-        envelope=_envelope(config, hull, formulation, centre),
-        fins=_fins(config, shift),
-        thrusters=_thrusters(config, shift),
-        outline=Strips(outline, radius, width),
-        nose=centre + jnp.stack([hull.centre(), jnp.zeros(()), jnp.zeros(())]),
-    )
+__all__ = ["assemble", "build_environment", "build_hull", "build_ship", "build_system", "slice_integrals"]
 
 
 def direction_from(azimuth: Float[Array, ""], upward: Float[Array, ""] | float = 0.0) -> Float[Array, "3"]:
@@ -304,9 +99,7 @@ def _cable(config: CableConfig, formulation: str, shift: Float[Array, "3"]) -> C
     )
 
 
-def build_system(
-    config: ScenarioConfig, reference_point: Float[Array, "3"] | None = None
-) -> TetheredAirship:
+def build_system(config: ScenarioConfig, reference_point: Float[Array, "3"] | None = None) -> TetheredAirship:
     """Return the plant of a scenario; `reference_point` as in `build_ship`."""
     shift = jnp.zeros(3) if reference_point is None else jnp.asarray(reference_point)
     return TetheredAirship(
@@ -321,9 +114,7 @@ def _compiled(config: ScenarioConfig, reference_point: Float[Array, "3"]) -> Tet
     return build_system(config, reference_point)
 
 
-def assemble(
-    config: ScenarioConfig, reference_point: Float[Array, "3"] | None = None
-) -> TetheredAirship:
+def assemble(config: ScenarioConfig, reference_point: Float[Array, "3"] | None = None) -> TetheredAirship:
     """Return the plant of a scenario by one compiled call, the same program for every value of its numbers.
 
     Parameters
@@ -334,5 +125,5 @@ def assemble(
         As in `build_ship`.
     """
     numbers = jax.tree.map(lambda leaf: np.asarray(leaf) if isinstance(leaf, float) else leaf, config)
-    shift = np.zeros(3) if reference_point is None else np.asarray(reference_point, dtype=float)
+    shift = jnp.zeros(3) if reference_point is None else jnp.asarray(reference_point, dtype=float)
     return _compiled(numbers, shift)

@@ -1,12 +1,15 @@
-"""What a scenario file may say about control laws; the paper's gains are the defaults. Depends on: scenario.quantity."""
+"""What a scenario file may say about control laws; the paper's gains are the defaults.
+
+Depends on: scenario.quantity.
+"""
 
 import difflib
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Annotated
 
-from pydantic import field_validator
+from pydantic import Field, field_validator
 
-from tethership.scenario.quantity import Table, quantity
+from tethership.scenario.quantity import Quantity, Table
 
 LAYERS = ("rewind", "heading", "navigation")
 """Names that `layers` may hold; SAS/attitude is always on unless switched off."""
@@ -25,53 +28,49 @@ def check_layers(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(names)
 
 
-def _gain(unit: str) -> Any:
-    return quantity(unit)
-
-
 class AttitudeConfig(Table):
     """Table A.1 of the paper; shares as Eq. 40 with the modulus of the ratio of arms, ½·9.07/2.0."""
 
-    roll_rate_gain: _gain("s/rad") = 2.0
-    pitch_rate_gain: _gain("s/rad") = 1.0
-    yaw_rate_gain: _gain("s/rad") = 5.0
-    roll_gain: _gain("1/rad") = 0.5
-    pitch_gain: _gain("1/rad") = 0.5
-    roll_target: _gain("rad") = 0.0
-    pitch_target: _gain("rad") = 0.0
-    roll_share: Share = {}
-    pitch_share: Share = {}
-    yaw_share: Share = {}
+    roll_rate_gain: Annotated[float, Quantity("s/rad")] = 2.0
+    pitch_rate_gain: Annotated[float, Quantity("s/rad")] = 1.0
+    yaw_rate_gain: Annotated[float, Quantity("s/rad")] = 5.0
+    roll_gain: Annotated[float, Quantity("1/rad")] = 0.5
+    pitch_gain: Annotated[float, Quantity("1/rad")] = 0.5
+    roll_target: Annotated[float, Quantity("rad")] = 0.0
+    pitch_target: Annotated[float, Quantity("rad")] = 0.0
+    roll_share: Share = Field(default_factory=dict)
+    pitch_share: Share = Field(default_factory=dict)
+    yaw_share: Share = Field(default_factory=dict)
 
 
 class RewindConfig(Table):
     """Table A.2 of the paper."""
 
-    gain: _gain("m/(s N)") = 0.005
-    threshold: quantity("N", low=0.0) = 144.3
-    slowest_rate: _gain("m/s") = 0.01
+    gain: Annotated[float, Quantity("m/(s N)")] = 0.005
+    threshold: Annotated[float, Quantity("N", low=0.0)] = 144.3
+    slowest_rate: Annotated[float, Quantity("m/s")] = 0.01
 
 
 class HeadingConfig(Table):
     """Table A.3 of the paper; `fade_radius` 0 never fades."""
 
-    gain: _gain("1/rad") = 5.0
-    fade_radius: quantity("m", low=0.0) = 0.0
-    share: Share = {}
+    gain: Annotated[float, Quantity("1/rad")] = 5.0
+    fade_radius: Annotated[float, Quantity("m", low=0.0)] = 0.0
+    share: Share = Field(default_factory=dict)
 
 
 class NavigationConfig(Table):
     """Table A.4 of the paper."""
 
-    position_gain: _gain("1/m") = 0.0033
-    vertical_gain: _gain("1/m") = 0.0033
-    speed_gain: _gain("s/m") = 0.033
-    climb_gain: _gain("s/m") = 0.033
-    speed_slope: quantity("1/s", low=0.0) = 0.1
-    largest_speed: quantity("m/s", low=0.0) = 0.5
-    largest_climb: quantity("m/s", low=0.0) = 0.5
-    forward_share: Share = {}
-    vertical_share: Share = {}
+    position_gain: Annotated[float, Quantity("1/m")] = 0.0033
+    vertical_gain: Annotated[float, Quantity("1/m")] = 0.0033
+    speed_gain: Annotated[float, Quantity("s/m")] = 0.033
+    climb_gain: Annotated[float, Quantity("s/m")] = 0.033
+    speed_slope: Annotated[float, Quantity("1/s", low=0.0)] = 0.1
+    largest_speed: Annotated[float, Quantity("m/s", low=0.0)] = 0.5
+    largest_climb: Annotated[float, Quantity("m/s", low=0.0)] = 0.5
+    forward_share: Share = Field(default_factory=dict)
+    vertical_share: Share = Field(default_factory=dict)
 
 
 class ControlConfig(Table):

@@ -11,8 +11,8 @@ from tethership.control import (
     NavigationLaw,
     RewindLaw,
 )
-from tethership.scenario.schema import ScenarioConfig
 from tethership.scenario.control_schema import Share, Table
+from tethership.scenario.schema import ScenarioConfig
 
 
 def build_law(config: ScenarioConfig) -> LayeredLaw:
@@ -35,10 +35,7 @@ def build_law(config: ScenarioConfig) -> LayeredLaw:
 
 def _arguments(gains: Table, thrusters: list[str]) -> dict[str, Array]:
     """Return the gains as arrays, shares in the order of the vehicle's thrusters."""
-    return {
-        key: _shares(value, thrusters) if isinstance(value, dict) else jnp.asarray(value)
-        for key, value in gains
-    }
+    return {key: _shares(value, thrusters) if isinstance(value, dict) else jnp.asarray(value) for key, value in gains}
 
 
 def _shares(shares: Share, thrusters: list[str]) -> Float[Array, "thrusters"]:

@@ -220,3 +220,31 @@ def read_solver(name: str = "adaptive") -> SolverConfig:
 def document_text(document: Document) -> str:
     """Return a document as JSON, for the attributes of a result."""
     return json.dumps(document, sort_keys=True)
+
+
+def describe_packaged() -> dict[str, dict[str, str]]:
+    """Return what is packaged: kind → name → one line."""
+    found: dict[str, dict[str, str]] = {}
+    for kind in ("scenarios", "vehicles", "solvers"):
+        documents = {name: _parsed(packaged_text(kind, name), name) for name in sorted(_packaged(kind))}
+        found[kind] = {name: d.get("description") or d.get("title", "") for name, d in documents.items()}
+    return found
+
+
+def check_file(name: str) -> str:
+    """Return what a file is (`scenario`, `vehicle` or `solver`) after checking all of it.
+
+    Raises
+    ------
+    ConfigError
+        As `load_scenario`.
+    """
+    document, origin = _read("scenarios", name)
+    if "body" in document or "hull" in document:
+        validated(VehicleConfig, document, origin)
+        return "vehicle"
+    if "method" in document or "step" in document:
+        validated(SolverConfig, document, origin)
+        return "solver"
+    load_scenario(name)
+    return "scenario"

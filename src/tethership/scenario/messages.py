@@ -18,23 +18,33 @@ def first_problem(error: ValidationError, origin: str, document: Any) -> str:
         What was validated; list items are named by their `name` where they have one.
     """
     problems = error.errors(include_url=False)
-    key = _dotted(document, problems[0]["loc"]) or "the file"
+    key = _dotted(document, problems[0]["loc"], problems[0]["type"] == "missing") or "the file"
     more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
     return f"{origin}: {key}: {_said(problems[0])}{more}"
 
 
-def _dotted(document: Any, location: tuple[int | str, ...]) -> str:
-    """Return the path of a key as the file has it, without the tags pydantic adds for unions."""
+def _dotted(document: Any, location: tuple[int | str, ...], missing: bool) -> str:
+    """Return the path of a key as the file has it, without the tags pydantic adds for unions.
+
+    Parameters
+    ----------
+    document : Any
+        What was validated.
+    location : tuple
+        Where, as pydantic says it.
+    missing : bool
+        Whether the last step is a key that is not there.
+    """
     keys: list[str] = []
-    here = document
+    here: Any = document
     for index, step in enumerate(location):
         inside_list = isinstance(here, list) and isinstance(step, int) and step < len(here)
         inside_table = isinstance(here, dict) and step in here
         if not inside_list and not inside_table:
-            if index == len(location) - 1:
+            if missing and index == len(location) - 1:
                 keys.append(str(step))
             continue
-        here = here[step]
+        here = here[step]  # pyright: ignore[reportCallIssue, reportArgumentType]
         name = here.get("name") if inside_list and isinstance(here, dict) else None
         keys.append(str(name or step))
     return ".".join(keys)

@@ -3,16 +3,18 @@
 Depends on: pint for the units, pydantic for where they stand, JAX for tables as pytrees.
 """
 
+import dataclasses
 import difflib
 import functools
 import math
-from collections.abc import Callable, Iterable
-from typing import Annotated, Any
+from collections.abc import Iterable
+from typing import Any, Self
 
 import jax
 import pint
-from pydantic import AfterValidator, BeforeValidator, ConfigDict, model_validator
 from pydantic import BaseModel as PydanticModel
+from pydantic import ConfigDict, GetCoreSchemaHandler, model_validator
+from pydantic_core import core_schema
 
 SI_UNIT = "SI"
 """Unit name for a number that is already in the field's SI unit, as an override gives it."""
@@ -47,7 +49,7 @@ class Table(PydanticModel):
         return [(jax.tree_util.GetAttrKey(name), getattr(self, name)) for name in names], names
 
     @classmethod
-    def _unflatten(cls, names: tuple[str, ...], values: Iterable[Any]) -> "Table":
+    def _unflatten(cls, names: tuple[str, ...], values: Iterable[Any]) -> Self:
         return cls.model_construct(**dict(zip(names, values, strict=True)))
 
 
@@ -67,85 +69,79 @@ def _converted(value: float, unit: str, si_unit: str) -> float:
         return float(value)
     pint_name = {"1": "dimensionless", "-": "dimensionless"}
     try:
-        return float(
-            unit_registry().Quantity(value, pint_name.get(unit, unit)).m_as(pint_name.get(si_unit, si_unit))
-        )
+        return float(unit_registry().Quantity(value, pint_name.get(unit, unit)).m_as(pint_name.get(si_unit, si_unit)))
     except pint.DimensionalityError as error:
         raise ValueError(f"the unit is {unit!r}, which is no {si_unit!r}; give one that converts to it") from error
     except Exception as error:
         raise ValueError(f"the unit is {unit!r}, which is not known; give {si_unit!r}") from error
 
 
-def _reader(si_unit: str, depth: int, sourced: bool) -> Callable[[Any], Any]:
-    """Return the function that reads one quantity of a given nesting (0 number, 1 vector, 2 matrix)."""
-    form = f'{{ value = {"[" * depth}…{"]" * depth}, unit = "{si_unit}"{", source = …" if sourced else ""} }}'
+@dataclasses.dataclass(frozen=True)
+class Quantity:
+    """What a number of a file is: stands in the `Annotated` type of a field.
 
-    def nested(value: Any, unit: str, level: int) -> Any:
-        if level == 0:
-            return _converted(value, unit, si_unit)
-        if not isinstance(value, list | tuple):
-            raise ValueError(f"the value is {value!r}, not a list; write {form}")
-        return tuple(nested(item, unit, level - 1) for item in value)
-
-    def read(datum: Any) -> Any:
-        if not isinstance(datum, dict):
-            raise ValueError(f"a number needs its unit: write {form}")
-        unknown = set(datum) - {"value", "unit", "source"}
-        missing = {"value", "unit"} - set(datum)
-        if sourced and datum.get("unit") != SI_UNIT and "source" not in datum:
-            missing.add("source")
-        if unknown or missing:
-            what = f"unknown {sorted(unknown)}" if unknown else f"missing {sorted(missing)}"
-            raise ValueError(f"{what}; write {form}")
-        return nested(datum["value"], str(datum["unit"]), depth)
-
-    return read
-
-
-def _bounded(low: float | None, high: float | None, open_low: bool) -> Callable[[Any], Any]:
-    """Return a check of a number (or of every number of a list) against bounds in SI."""
-
-    def check(value: Any) -> Any:
-        items = value if isinstance(value, tuple) else (value,)
-        for item in items:
-            if low is not None and (item <= low if open_low else item < low):
-                raise ValueError(f"it is {item:g}; it must be {'above' if open_low else 'at least'} {low:g}")
-            if high is not None and item > high:
-                raise ValueError(f"it is {item:g}; it must be at most {high:g}")
-        return value
-
-    return check
-
-
-def quantity(
-    unit: str,
-    *,
-    low: float | None = None,
-    high: float | None = None,
-    positive: bool = False,
-    sourced: bool = False,
-    kind: Any = float,
-    depth: int = 0,
-) -> Any:
-    """Return the pydantic type of a quantity.
-
-    Parameters
+    Attributes
     ----------
     unit : str
         SI unit in which it arrives inside.
+    depth : int
+        0 for a number, 1 for a vector, 2 for a matrix.
     low, high : float, optional
         Bounds in SI, included.
     positive : bool
         It must be above zero.
     sourced : bool
         `source` must be given too (vehicles).
-    kind : type
-        Python type after reading.
-    depth : int
-        0 for a number, 1 for a vector, 2 for a matrix.
     """
-    check = _bounded(0.0 if positive else low, high, open_low=positive)
-    return Annotated[kind, BeforeValidator(_reader(unit, depth, sourced)), AfterValidator(check)]
+
+    unit: str
+    depth: int = 0
+    low: float | None = None
+    high: float | None = None
+    positive: bool = False
+    sourced: bool = False
+
+    def __get_pydantic_core_schema__(self, kind: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        checked = core_schema.no_info_after_validator_function(self._check, handler(kind))
+        return core_schema.no_info_before_validator_function(self._read, checked)
+
+    @property
+    def form(self) -> str:
+        """How it is written in a file."""
+        value = "[" * self.depth + "…" + "]" * self.depth
+        source = ', source = "…"' if self.sourced else ""
+        return f'{{ value = {value}, unit = "{self.unit}"{source} }}'
+
+    def _read(self, datum: Any) -> Any:
+        """Return the value in SI, or raise ValueError that shows how to write it."""
+        if not isinstance(datum, dict):
+            raise ValueError(f"it is {datum!r}; a number needs its unit: write {self.form}")
+        unknown = set(datum) - {"value", "unit", "source"}
+        missing = {"value", "unit"} - set(datum)
+        if self.sourced and datum.get("unit") != SI_UNIT and "source" not in datum:
+            missing.add("source")
+        if unknown or missing:
+            what = f"unknown {sorted(unknown)}" if unknown else f"missing {sorted(missing)}"
+            raise ValueError(f"{what}; write {self.form}")
+        return self._nested(datum["value"], str(datum["unit"]), self.depth)
+
+    def _nested(self, value: Any, unit: str, level: int) -> Any:
+        if level == 0:
+            return _converted(value, unit, self.unit)
+        if not isinstance(value, list | tuple):
+            raise ValueError(f"the value is {value!r}, not a list; write {self.form}")
+        return tuple(self._nested(item, unit, level - 1) for item in value)
+
+    def _check(self, value: Any) -> Any:
+        """Return the value, or raise ValueError where it is out of bounds."""
+        for item in value if isinstance(value, tuple) else (value,):
+            if self.positive and item <= 0:
+                raise ValueError(f"it is {item:g} {self.unit}; it must be above 0")
+            if self.low is not None and item < self.low:
+                raise ValueError(f"it is {item:g} {self.unit}; it must be at least {self.low:g}")
+            if self.high is not None and item > self.high:
+                raise ValueError(f"it is {item:g} {self.unit}; it must be at most {self.high:g}")
+        return value
 
 
 Vector = tuple[float, float, float]

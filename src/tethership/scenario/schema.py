@@ -5,30 +5,30 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from tethership.scenario.control_schema import ControlConfig
-from tethership.scenario.quantity import Table, Vector, quantity
+from tethership.scenario.quantity import Quantity, Table, Vector
 from tethership.scenario.vehicle_schema import VehicleConfig
 
-Angle = quantity("rad")
-Speed = quantity("m/s", low=0.0)
-Metres = quantity("m", positive=True)
-Seconds = quantity("s", positive=True)
-Point = quantity("m", kind=Vector, depth=1)
-Newtons = quantity("N", positive=True)
+Angle = Annotated[float, Quantity("rad")]
+Speed = Annotated[float, Quantity("m/s", low=0.0)]
+Metres = Annotated[float, Quantity("m", positive=True)]
+Seconds = Annotated[float, Quantity("s", positive=True)]
+Point = Annotated[Vector, Quantity("m", depth=1)]
+Newtons = Annotated[float, Quantity("N", positive=True)]
 
 
 class StandardAir(Table):
     """ISA troposphere."""
 
     model: Literal["isa"] = "isa"
-    ground_altitude: quantity("m", low=-1000.0, high=10_000.0) = 0.0
-    temperature_offset: quantity("K", low=-80.0, high=80.0) = 0.0
+    ground_altitude: Annotated[float, Quantity("m", low=-1000.0, high=10_000.0)] = 0.0
+    temperature_offset: Annotated[float, Quantity("K", low=-80.0, high=80.0)] = 0.0
 
 
 class ConstantAir(Table):
     """The same density everywhere."""
 
     model: Literal["constant"]
-    density: quantity("kg/m^3", low=0.0)
+    density: Annotated[float, Quantity("kg/m^3", low=0.0)]
 
 
 AirConfig = Annotated[StandardAir | ConstantAir, Field(discriminator="model")]
@@ -49,7 +49,7 @@ class PowerLawWindConfig(Table):
     speed: Speed
     from_direction: Angle = 0.0
     reference_height: Metres
-    exponent: quantity("1", low=0.0, high=1.0)
+    exponent: Annotated[float, Quantity("1", low=0.0, high=1.0)]
     lowest_height: Metres = 0.5
 
 
@@ -59,11 +59,11 @@ WindConfig = Annotated[UniformWindConfig | PowerLawWindConfig, Field(discriminat
 class GustConfig(Table):
     """A 1 − cos pulse; its peak is a `fraction` of the wind, or a `speed`."""
 
-    fraction: quantity("1", low=0.0) | None = None
+    fraction: Annotated[float, Quantity("1", low=0.0)] | None = None
     speed: Speed | None = None
     from_direction: Angle
     upward_angle: Angle = 0.0
-    start: quantity("s", low=0.0)
+    start: Annotated[float, Quantity("s", low=0.0)]
     period: Seconds
 
     @model_validator(mode="after")
@@ -80,8 +80,8 @@ class GroundConfig(Table):
     at ground level and the least clearance is only recorded.
     """
 
-    anchor_height: quantity("m", low=0.0) | None = None
-    effect_coefficient: quantity("1/m") | None = None
+    anchor_height: Annotated[float, Quantity("m", low=0.0)] | None = None
+    effect_coefficient: Annotated[float, Quantity("1/m")] | None = None
 
 
 class WinchConfig(Table):
@@ -98,14 +98,14 @@ class CableConfig(Table):
     tether_point: Point
     anchor: Point
     length: Metres
-    diameter: quantity("m", low=0.0)
-    linear_density: quantity("kg/m", low=0.0)
+    diameter: Annotated[float, Quantity("m", low=0.0)]
+    linear_density: Annotated[float, Quantity("kg/m", low=0.0)]
     stiffness: Newtons
     breaking_force: Newtons
-    joint_start: quantity("1", positive=True)
-    joint_end: quantity("1", positive=True)
-    cross_flow_drag_coefficient: quantity("1", low=0.0)
-    longitudinal_drag_coefficient: quantity("1", low=0.0)
+    joint_start: Annotated[float, Quantity("1", positive=True)]
+    joint_end: Annotated[float, Quantity("1", positive=True)]
+    cross_flow_drag_coefficient: Annotated[float, Quantity("1", low=0.0)]
+    longitudinal_drag_coefficient: Annotated[float, Quantity("1", low=0.0)]
     winch: WinchConfig
 
     @model_validator(mode="after")
@@ -120,34 +120,36 @@ class CableConfig(Table):
 class TrimConfig(Table):
     """What is looked for and what is held when the flight's start is trimmed.
 
-    `unknowns` are names of states (u … down), of thrusters or fins, `throttle` (all thrusters) or `deflection`
-    (all fins). `fixed` holds states at values other than zero. With `hold = "tether_point"` the first cable's
-    tether point is put at `elongation` times its length from the anchor, at `elevation` and `bearing` from there.
+    `unknowns` are names of the motion's quantities (velocity_north, velocity_east, velocity_down, p, q, r, phi,
+    theta, psi, north, east, down), of thrusters or fins, `throttle` (all thrusters) or `deflection` (all fins).
+    `velocity` is over the ground, in ground axes; where position or attitude are looked for, the search starts
+    there. With `hold = "tether_point"` the first cable's tether point is put at `elongation` times its length
+    from the anchor, at `elevation` and `bearing` from there.
     """
 
     hold: Literal["tether_point", "reference_point"] = "tether_point"
     unknowns: tuple[str, ...] = ("throttle",)
-    elongation: quantity("1", positive=True) | None = None
-    elevation: quantity("rad", low=-1.5708, high=1.5708) = 0.7853981633974483
+    elongation: Annotated[float, Quantity("1", positive=True)] | None = None
+    elevation: Annotated[float, Quantity("rad", low=-1.5708, high=1.5708)] = 0.7853981633974483
     bearing: Angle = 3.141592653589793
     position: Point | None = None
-    velocity: quantity("m/s", kind=Vector, depth=1) = (0.0, 0.0, 0.0)
-    attitude: quantity("rad", kind=Vector, depth=1) = (0.0, 0.0, 0.0)
+    velocity: Annotated[Vector, Quantity("m/s", depth=1)] = (0.0, 0.0, 0.0)
+    attitude: Annotated[Vector, Quantity("rad", depth=1)] = (0.0, 0.0, 0.0)
 
 
 class StartConfig(Table):
     """How the flight's start differs from trim; `hold` is the point that stays where it is."""
 
-    attitude_offset: quantity("rad", kind=Vector, depth=1) = (0.0, 0.0, 0.0)
+    attitude_offset: Annotated[Vector, Quantity("rad", depth=1)] = (0.0, 0.0, 0.0)
     hold: Literal["tether_point", "reference_point"] = "tether_point"
 
 
 class StopConfig(Table):
     """What ends a flight."""
 
-    cable_length: quantity("m", low=0.0) = 1.5
+    cable_length: Annotated[float, Quantity("m", low=0.0)] = 1.5
     time_limit: Seconds = 200.0
-    largest_pitch: quantity("rad", positive=True, high=1.55) = 1.3962634015954636
+    largest_pitch: Annotated[float, Quantity("rad", positive=True, high=1.55)] = 1.3962634015954636
 
 
 class LimitsConfig(Table):

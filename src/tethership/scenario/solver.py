@@ -1,10 +1,10 @@
 """What a solver file may say. Depends on: scenario.quantity."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
-from tethership.scenario.quantity import Table, quantity
+from tethership.scenario.quantity import Quantity, Table
 
 
 class SolverConfig(Table):
@@ -34,7 +34,7 @@ class SolverConfig(Table):
     step: Literal["adaptive", "fixed"] = "adaptive"
     relative_tolerance: float = Field(1e-6, gt=0, le=1e-2)
     absolute_tolerance: float = Field(1e-6, gt=0, le=1e-2)
-    largest_step: quantity("s", positive=True) = 0.25
-    smallest_step: quantity("s", positive=True) = 1e-3
-    output_interval: quantity("s", positive=True) = 0.025
+    largest_step: Annotated[float, Quantity("s", positive=True)] = 0.25
+    smallest_step: Annotated[float, Quantity("s", positive=True)] = 1e-3
+    output_interval: Annotated[float, Quantity("s", positive=True)] = 0.025
     most_steps: int = Field(400_000, gt=0)

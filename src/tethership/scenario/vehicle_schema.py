@@ -1,30 +1,25 @@
 """What a vehicle file may say. Every number has a value, a unit and a source. Depends on: scenario.quantity."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from tethership.scenario.quantity import Matrix, Table, Vector, quantity
+from tethership.scenario.quantity import Matrix, Quantity, Table, Vector
 
-
-def _sourced(unit: str, **options: Any) -> Any:
-    return quantity(unit, sourced=True, **options)
-
-
-Length = _sourced("m", positive=True)
-Position = _sourced("m", kind=Vector, depth=1)
-Number = _sourced("1")
-Positive = _sourced("1", positive=True)
-NotNegative = _sourced("1", low=0.0)
+Length = Annotated[float, Quantity("m", positive=True, sourced=True)]
+Position = Annotated[Vector, Quantity("m", depth=1, sourced=True)]
+Number = Annotated[float, Quantity("1", sourced=True)]
+Positive = Annotated[float, Quantity("1", positive=True, sourced=True)]
+NotNegative = Annotated[float, Quantity("1", low=0.0, sourced=True)]
 
 
 class BodyConfig(Table):
     """Mass, centre of gravity and inertia, from the origin of the body axes."""
 
-    mass: _sourced("kg", positive=True)
+    mass: Annotated[float, Quantity("kg", positive=True, sourced=True)]
     centre_of_gravity: Position
-    inertia: _sourced("kg m^2", kind=Matrix, depth=2)
+    inertia: Annotated[Matrix, Quantity("kg m^2", depth=2, sourced=True)]
 
     @model_validator(mode="after")
     def _positive_definite(self) -> "BodyConfig":
@@ -48,7 +43,7 @@ class GertlerHull(Table):
     profile: Literal["gertler"]
     length: Length
     diameter: Length
-    coefficients: _sourced("1", kind=tuple[float, float, float, float, float, float], depth=1)
+    coefficients: Annotated[tuple[float, float, float, float, float, float], Quantity("1", depth=1, sourced=True)]
 
 
 class GertlerShapeHull(Table):
@@ -77,7 +72,7 @@ HullConfig = Annotated[GertlerHull | GertlerShapeHull | EllipsoidHull, Field(dis
 class BuoyancyConfig(Table):
     """Displaced volume and its centre, from the origin of the body axes."""
 
-    volume: _sourced("m^3", positive=True)
+    volume: Annotated[float, Quantity("m^3", positive=True, sourced=True)]
     centre: Position
 
 
@@ -89,7 +84,7 @@ class FactorsConfig(Table):
     k2: NotNegative
     k3: NotNegative
     k_rotational: NotNegative
-    gyration_radius_squared: _sourced("m^2", kind=tuple[float, float], depth=1)
+    gyration_radius_squared: Annotated[tuple[float, float], Quantity("m^2", depth=1, sourced=True)]
 
     @model_validator(mode="after")
     def _revolution(self) -> "FactorsConfig":
@@ -102,7 +97,7 @@ class LambConfig(Table):
     """Apparent mass by Lamb's formulas from the hull's length over diameter, or a given fineness ratio."""
 
     model: Literal["lamb"]
-    fineness: _sourced("1", low=1.0001) | None = None
+    fineness: Annotated[float, Quantity("1", low=1.0001, sourced=True)] | None = None
 
 
 ApparentMassConfig = Annotated[FactorsConfig | LambConfig, Field(discriminator="model")]
@@ -121,15 +116,15 @@ class FinConfig(Table):
     """One fin; roll angle 0 is starboard, 90° down."""
 
     name: str
-    roll: _sourced("rad")
-    area: _sourced("m^2", positive=True)
-    lift_slope: _sourced("1/rad", low=0.0)
+    roll: Annotated[float, Quantity("rad", sourced=True)]
+    area: Annotated[float, Quantity("m^2", positive=True, sourced=True)]
+    lift_slope: Annotated[float, Quantity("1/rad", low=0.0, sourced=True)]
     efficiency: NotNegative
     cross_flow_drag_coefficient: NotNegative
     axial_drag_coefficient: NotNegative
-    aerodynamic_station: _sourced("m")
-    cross_flow_station: _sourced("m")
-    distance_from_axis: _sourced("m", low=0.0)
+    aerodynamic_station: Annotated[float, Quantity("m", sourced=True)]
+    cross_flow_station: Annotated[float, Quantity("m", sourced=True)]
+    distance_from_axis: Annotated[float, Quantity("m", low=0.0, sourced=True)]
 
 
 class ThrusterConfig(Table):
@@ -137,10 +132,10 @@ class ThrusterConfig(Table):
 
     name: str
     position: Position
-    direction: _sourced("1", kind=Vector, depth=1)
-    nominal_thrust: _sourced("N", positive=True)
+    direction: Annotated[Vector, Quantity("1", depth=1, sourced=True)]
+    nominal_thrust: Annotated[float, Quantity("N", positive=True, sourced=True)]
     reversible: bool
-    speed_of_no_thrust: _sourced("m/s", positive=True) | None = None
+    speed_of_no_thrust: Annotated[float, Quantity("m/s", positive=True, sourced=True)] | None = None
 
     @model_validator(mode="after")
     def _unit_direction(self) -> "ThrusterConfig":

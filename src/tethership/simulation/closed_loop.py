@@ -75,9 +75,7 @@ class ClosedLoop(eqx.Module):
         count = len(self.plant.cables)
         return State.from_vector(vector[:12]), vector[12 : 12 + count], vector[12 + count :]
 
-    def measure(
-        self, state: State, lengths: Float[Array, "cables"], cables: tuple[CableState, ...]
-    ) -> Measurement:
+    def measure(self, state: State, lengths: Float[Array, "cables"], cables: tuple[CableState, ...]) -> Measurement:
         """Return what the sensors say: nothing of the plant but this reaches a law."""
         rotation = rotation_matrix(state.attitude)
         velocity_b = state.velocity + jnp.cross(state.rates, self.plant.ship.buoyancy.centre)
@@ -90,9 +88,7 @@ class ClosedLoop(eqx.Module):
             offset=jnp.stack([c.span for c in cables]) if count else jnp.zeros((0, 3)),
             tension=jnp.stack([safe_norm(c.ship) for c in cables]) if count else jnp.zeros(0),
             length=lengths,
-            rewind_rate=jnp.stack([c.winch.default_rate for c in self.plant.cables])
-            if count
-            else jnp.zeros(0),
+            rewind_rate=jnp.stack([c.winch.default_rate for c in self.plant.cables]) if count else jnp.zeros(0),
         )
 
     def _memory(self, flat: Array, measurement: Measurement) -> Any:
@@ -115,14 +111,10 @@ class ClosedLoop(eqx.Module):
         throttle = self.plant.ship.thrusters.saturate(asked)
         command = Command(throttle, self.trimmed.deflection + correction.deflection)
         loads = self.plant.wrenches(time, state, command, cables)
-        return Instant(
-            state, lengths, cables, command, asked != throttle, self._rewind(correction), loads, memory_rate
-        )
+        return Instant(state, lengths, cables, command, asked != throttle, self._rewind(correction), loads, memory_rate)
 
     def vector_field(self, time: Float[Array, ""], vector: Float[Array, "n"]) -> Float[Array, "n"]:
         """Return the time derivative of the integrator's vector at time t [s]; dL_t/dt = −Ψ."""
         now = self.instant(time, vector)
         rate = derivative(now.state, now.loads, self.plant.ship, self.plant.environment)
-        return jnp.concatenate(
-            [rate.as_vector(), -now.rewind_rate, ravel_pytree(now.memory_rate)[0]]
-        )
+        return jnp.concatenate([rate.as_vector(), -now.rewind_rate, ravel_pytree(now.memory_rate)[0]])

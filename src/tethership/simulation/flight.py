@@ -115,13 +115,15 @@ def fly(
     pieces: list[dict[str, np.ndarray]] = []
     time, steps, outcome = 0.0, 0, None
     done = -1
+    if progress is not None:  # compile first, so that the time of flying can be shown apart
+        nowhere = jnp.asarray(1e-6), jnp.zeros(SAMPLES)
+        jax.block_until_ready(fly_segment(loop, stop, stepping, jnp.asarray(0.0), vector, *nowhere))
+        progress(0.0)
     with Interruption() as interruption:
         while outcome is None:
             times = (done + 1 + np.arange(SAMPLES)) * interval
             end = min(float(times[-1]), time_limit)
-            segment = fly_segment(
-                loop, stop, stepping, jnp.asarray(time), vector, jnp.asarray(end), jnp.asarray(times)
-            )
+            segment = fly_segment(loop, stop, stepping, jnp.asarray(time), vector, jnp.asarray(end), jnp.asarray(times))
             segment = jax.device_get(segment)
             kept = _kept(segment)
             pieces.append(kept)
@@ -131,8 +133,8 @@ def fly(
             outcome = _outcome(segment, time, time_limit, steps, solver.most_steps, interruption.raised)
             if progress is not None:
                 progress(time)
-    if outcome is not Outcome.diverged:
-        pieces.append(_end(segment, pieces))
+            if outcome is not None and outcome is not Outcome.diverged:
+                pieces.append(_end(segment, pieces))
     arrays = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
     return Flown(arrays, outcome, steps)
 

@@ -76,7 +76,7 @@ def _cables(loop: ClosedLoop, now: Instant) -> dict[str, Array]:
         "tension": each(lambda c, s, length: safe_norm(s.ship)),
         "tension_largest": each(lambda c, s, length: end_tension(s)),
         "cable_curve": curves,
-        "cable_clearance": ground - jnp.max(curves[:, :, 2], axis=1, initial=-jnp.inf),
+        "cable_clearance": ground - each(lambda c, s, length: c.lowest_point(s, length)[2]),
         "tether_offset": each(lambda c, s, length: s.span, 3),
         "distance": distance,
         "elongation": distance / now.lengths,

@@ -129,9 +129,7 @@ def derivative(state: State, loads: dict[str, Wrench], ship: Airship, environmen
     inertia = ship.body.gyroscopic(state.velocity, state.rates)
     force = sum((load.force for load in loads.values()), -inertia.force)
     moment = sum((load.moment for load in loads.values()), -inertia.moment)
-    acceleration = solve_symmetric(
-        mass_matrix(state, ship, environment), jnp.concatenate([force, moment])
-    )
+    acceleration = solve_symmetric(mass_matrix(state, ship, environment), jnp.concatenate([force, moment]))
     return State(
         acceleration[:3],
         acceleration[3:],

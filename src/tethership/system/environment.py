@@ -69,9 +69,7 @@ class Environment(eqx.Module):
             total = total + gust.velocity(time)
         return total
 
-    def air(
-        self, position: Float[Array, "3"], velocity: Float[Array, "3"], time: Float[Array, ""]
-    ) -> Air:
+    def air(self, position: Float[Array, "3"], velocity: Float[Array, "3"], time: Float[Array, ""]) -> Air:
         """Return the air met at B.
 
         Parameters

@@ -84,11 +84,49 @@ class Cable(eqx.Module):
         rotation = rotation_matrix(state.attitude)
         span = state.position + rotation @ self.tether_point - self.anchor
         velocity = rotation @ (state.velocity + jnp.cross(state.rates, self.tether_point))
-        middle = self.anchor + 0.5 * span
-        air_velocity = 0.5 * velocity - environment.wind_at(middle, time)
-        load = self.load.per_length(environment.density_at(middle), air_velocity, span)
+        wind = environment.wind_at(self.anchor + 0.5 * span, time)
+        return self.between(span, velocity, length, wind, environment)
+
+    def between(
+        self,
+        span: Float[Array, "3"],
+        velocity: Float[Array, "3"],
+        length: Float[Array, ""],
+        wind: Float[Array, "3"],
+        environment: Environment,
+    ) -> CableState:
+        """Return the cable's forces between two points, ground axes.
+
+        Parameters
+        ----------
+        span : Float[Array, "3"]
+            d = x_TP − x_AP [m].
+        velocity : Float[Array, "3"]
+            Ground velocity of TP [m/s].
+        length : Float[Array, ""]
+            L_t [m].
+        wind : Float[Array, "3"]
+            Wind at the mid-point [m/s].
+        environment : Environment
+            Gives the density there.
+        """
+        density = environment.density_at(self.anchor + 0.5 * span)
+        load = self.load.per_length(density, 0.5 * velocity - wind, span)
         force = self.law.force(span, length, load)
         return CableState(span, force.ship, force.anchor, load)
+
+    def lowest_point(self, cable: CableState, length: Float[Array, ""]) -> Float[Array, "3"]:
+        """Return the lowest point of the cable, ground axes [m]; arguments as `state` returns them.
+
+        Notes
+        -----
+        The tension vector at s is F_AP − l s: level where its down component vanishes, else an end is lowest.
+        """
+        down = cable.load[2]
+        level = cable.anchor[2] / jnp.where(jnp.abs(down) > 0, down, 1.0)
+        arc = jnp.stack([jnp.zeros_like(length), jnp.clip(level, 0.0, length), length])
+        points = self.anchor + self.law.shape(cable.span, length, cable.load, arc)
+        return points[jnp.argmax(points[:, 2])]
 
 
 class TetheredAirship(eqx.Module):
@@ -109,9 +147,7 @@ class TetheredAirship(eqx.Module):
         self, time: Float[Array, ""], state: State, lengths: Float[Array, "cables"]
     ) -> tuple[CableState, ...]:
         """Return the state of each cable at time t [s] for lengths L_t [m]."""
-        return tuple(
-            cable.state(time, state, lengths[i], self.environment) for i, cable in enumerate(self.cables)
-        )
+        return tuple(cable.state(time, state, lengths[i], self.environment) for i, cable in enumerate(self.cables))
 
     def wrenches(
         self,
@@ -149,3 +185,60 @@ class TetheredAirship(eqx.Module):
 def end_tension(cable: CableState) -> Float[Array, ""]:
     """Return the largest tension along a cable [N]: it is at one of its ends."""
     return jnp.maximum(safe_norm(cable.ship), safe_norm(cable.anchor))
+
+
+class CableBetween(NamedTuple):
+    """One cable between two given points, ground axes.
+
+    Attributes
+    ----------
+    ship, anchor : Float[Array, "3"]
+        Forces of the cable on the ship and on the anchor [N].
+    load : Float[Array, "3"]
+        l [N/m].
+    lowest : Float[Array, "3"]
+        Lowest point [m].
+    regime : Float[Array, ""]
+        0 slack, 1 joint, 2 taut.
+    """
+
+    ship: Float[Array, "3"]
+    anchor: Float[Array, "3"]
+    load: Float[Array, "3"]
+    lowest: Float[Array, "3"]
+    regime: Float[Array, ""]
+
+
+@eqx.filter_jit
+def cable_between(
+    cable: Cable,
+    environment: Environment,
+    end: Float[Array, "3"],
+    anchor: Float[Array, "3"],
+    length: Float[Array, ""],
+    velocity: Float[Array, "3"],
+    wind: Float[Array, "3"] | None,
+) -> CableBetween:
+    """Return forces and lowest point of a cable whose ends are given.
+
+    Parameters
+    ----------
+    cable, environment
+        Parameters.
+    end, anchor : Float[Array, "3"]
+        Ends, ground axes [m].
+    length : Float[Array, ""]
+        L_t [m].
+    velocity : Float[Array, "3"]
+        Ground velocity of the ship's end [m/s].
+    wind : Float[Array, "3"], optional
+        Wind at the mid-point [m/s]; the environment's at time zero if not given.
+    """
+    moved = eqx.tree_at(lambda c: c.anchor, cable, anchor)
+    span = end - anchor
+    if wind is None:
+        wind = environment.wind_at(anchor + 0.5 * span, jnp.zeros(()))
+    state = moved.between(span, velocity, jnp.asarray(length), wind, environment)
+    regime = cable.law.regime(safe_norm(span) / length)
+    lowest = moved.lowest_point(state, jnp.asarray(length))
+    return CableBetween(state.ship, state.anchor, state.load, lowest, regime)

@@ -32,9 +32,7 @@ ITERATIONS = 7
 _TINY = 1e-300
 
 
-def _guess(
-    across: Float[Array, ""], along: Float[Array, ""], stretch: Float[Array, ""]
-) -> Float[Array, ""]:
+def _guess(across: Float[Array, ""], along: Float[Array, ""], stretch: Float[Array, ""]) -> Float[Array, ""]:
     """Return a starting z, within 10 % in common geometries.
 
     Notes
@@ -47,9 +45,7 @@ def _guess(
     cubic = 3.0 * stretch * squared / across
     cube_root_squared = jnp.exp(2.0 / 3.0 * jnp.log(cubic + _TINY))
     slack = jnp.sqrt(6.0 * excess + excess**2 + cube_root_squared)
-    taut = 3.0 * stretch * squared / (
-        3.0 * jnp.maximum(squared - 1.0, 0.0) + across * cube_root_squared + _TINY
-    )
+    taut = 3.0 * stretch * squared / (3.0 * jnp.maximum(squared - 1.0, 0.0) + across * cube_root_squared + _TINY)
     limit = 0.5 * jnp.log1p((jnp.abs(1.0 - along**2) + stretch) / across)
     start = jnp.minimum(jnp.where(squared < 1.0, slack, taut), jnp.sqrt(limit**2 + 6.0 * limit))
     return jnp.maximum(start, _TINY)
@@ -98,9 +94,7 @@ def _newton_step(
 
 @jax.custom_jvp
 @partial(jax.jit, inline=True)
-def root(
-    across: Float[Array, ""], along: Float[Array, ""], stretch: Float[Array, ""]
-) -> Float[Array, ""]:
+def root(across: Float[Array, ""], along: Float[Array, ""], stretch: Float[Array, ""]) -> Float[Array, ""]:
     """Return the root z of (*) [-], with exact derivatives.
 
     Parameters
@@ -188,10 +182,7 @@ def end_forces(
     along, across, squared, weight = split(span, length, load)
     stretch = weight * length * compliance
     z = root(squared, along, stretch)
-    ship = (
-        -weight / (2.0 * z + stretch) * across
-        + 0.5 * length * (1.0 + along / (jnp.tanh(z) + 0.5 * stretch)) * load
-    )
+    ship = -weight / (2.0 * z + stretch) * across + 0.5 * length * (1.0 + along / (jnp.tanh(z) + 0.5 * stretch)) * load
     return CableForce(ship, length * load - ship)
 
 

@@ -21,9 +21,7 @@ class ElasticCatenary(AbstractTensionLaw):
 
     stiffness: Float[Array, ""]
 
-    def force(
-        self, span: Float[Array, "3"], length: Float[Array, ""], load: Float[Array, "3"]
-    ) -> CableForce:
+    def force(self, span: Float[Array, "3"], length: Float[Array, ""], load: Float[Array, "3"]) -> CableForce:
         """Return the forces at both ends; arguments as in `AbstractTensionLaw.force`."""
         return end_forces(span, length, regularised(load), 1.0 / self.stiffness)
 

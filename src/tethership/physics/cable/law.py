@@ -46,9 +46,7 @@ class AbstractTensionLaw(eqx.Module):
     stiffness: eqx.AbstractVar[Float[Array, ""]]
 
     @abc.abstractmethod
-    def force(
-        self, span: Float[Array, "3"], length: Float[Array, ""], load: Float[Array, "3"]
-    ) -> CableForce:
+    def force(self, span: Float[Array, "3"], length: Float[Array, ""], load: Float[Array, "3"]) -> CableForce:
         """Return the forces at both ends [N], ground axes.
 
         Parameters

@@ -46,9 +46,7 @@ class PublishedTension(AbstractTensionLaw):
         outward = jnp.where(apart, span / jnp.where(apart, distance, 1.0), 0.0)
         return elongation, outward, span * scale
 
-    def force(
-        self, span: Float[Array, "3"], length: Float[Array, ""], load: Float[Array, "3"]
-    ) -> CableForce:
+    def force(self, span: Float[Array, "3"], length: Float[Array, ""], load: Float[Array, "3"]) -> CableForce:
         """Return the forces at both ends; arguments as in `AbstractTensionLaw.force`."""
         elongation, outward, sagging = self._sagging_span(span, length)
         slack = end_forces(sagging, length, regularised(load), jnp.zeros_like(length))

@@ -1,0 +1,66 @@
+"""The command `tethership`. Exits 0 on success, 2 on wrong input, 3 when a computation has no answer."""
+
+import sys
+from typing import Annotated
+
+import typer
+
+from tethership._version import __version__
+from tethership.cli import dock, files, tension, trim
+from tethership.cli.common import NO_ANSWER, WRONG_INPUT
+from tethership.errors import ConfigError, SolveError
+
+app = typer.Typer(
+    name="tethership",
+    help="Flight dynamics, control and certification of tethered airships.",
+    add_completion=True,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+@app.callback(invoke_without_command=True)
+def _root(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
+) -> None:
+    if version:
+        typer.echo(__version__)
+        raise typer.Exit
+    if context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+
+
+app.command("dock", epilog=dock.EXAMPLE)(dock.dock)
+app.command("trim", epilog=trim.EXAMPLE)(trim.trim)
+app.command("tension", epilog=tension.EXAMPLE)(tension.tension)
+app.command("list", epilog=files.LIST_EXAMPLE)(files.list_)
+app.command("validate", epilog=files.VALIDATE_EXAMPLE)(files.validate)
+app.command("new", epilog=files.NEW_EXAMPLE)(files.new)
+
+
+def _fail(message: str, code: int) -> None:
+    """Print one line on standard error and exit."""
+    typer.echo(f"tethership: {' '.join(message.split())}", err=True)
+    sys.exit(code)
+
+
+def main() -> None:
+    """Run the command with the promised exit codes and one clear line for wrong input."""
+    try:
+        code = app(standalone_mode=False)
+    except ConfigError as error:
+        _fail(str(error), WRONG_INPUT)
+    except SolveError as error:
+        _fail(str(error), NO_ANSWER)
+    except (KeyboardInterrupt, typer.Abort):
+        _fail("interrupted before anything was flown", NO_ANSWER)
+    except Exception as error:
+        # typer carries a copy of click of its own: its usage errors are known by what they can do.
+        spoken = getattr(error, "format_message", None)
+        if spoken is None:
+            raise
+        _fail(f"{spoken()} (tethership --help shows what is allowed)", WRONG_INPUT)
+    else:
+        sys.exit(code if isinstance(code, int) else 0)

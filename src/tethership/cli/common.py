@@ -1,0 +1,129 @@
+"""What all commands share: the scenario argument, common flags, JSON and stages. Depends on: scenario, rich."""
+
+import contextlib
+import json
+import math
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from tethership.errors import ConfigError
+from tethership.scenario import Scenario, load_scenario
+
+WRONG_INPUT = 2
+"""Exit code for wrong input."""
+
+NO_ANSWER = 3
+"""Exit code when a computation has no answer."""
+
+ScenarioArgument = Annotated[
+    str, typer.Argument(help="Packaged scenario (see `tethership list`) or a path that ends in .toml.")
+]
+WindOption = Annotated[float | None, typer.Option("--wind", metavar="M_PER_S", help="Speed of the wind [m/s].")]
+FormulationOption = Annotated[str | None, typer.Option(help="consistent or published: hull and cable laws together.")]
+OutOption = Annotated[Path, typer.Option(help="Folder for the files that are written.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, nothing else.")]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Change one value of the scenario, SI and radians; repeatable."),
+]
+
+
+def chosen_scenario(name: str, wind: float | None, formulation: str | None, changes: list[str] | None) -> Scenario:
+    """Return the scenario with the flags applied; a flag wins over the file.
+
+    Parameters
+    ----------
+    name : str
+        Packaged name or path.
+    wind : float, optional
+        Wind speed [m/s].
+    formulation : str, optional
+        `consistent` or `published`.
+    changes : list of str, optional
+        `key=value` pairs.
+
+    Raises
+    ------
+    ConfigError
+        As `load_scenario`, or a change that is not `key=value`.
+    """
+    values: dict[str, Any] = dict(_change(text) for text in changes or [])
+    if wind is not None:
+        values["wind.speed"] = wind
+    if formulation is not None:
+        values["formulation"] = formulation
+    return load_scenario(name, values)
+
+
+def _change(text: str) -> tuple[str, Any]:
+    """Return key and value of `key=value`; the value is JSON where it can be, else a word."""
+    key, equals, value = text.partition("=")
+    if not equals or not key:
+        raise ConfigError(f"--set {text!r} is no change; write --set key=value, e.g. --set wind.speed=9")
+    try:
+        return key, json.loads(value)
+    except json.JSONDecodeError:
+        return key, value
+
+
+def json_text(result: dict[str, Any]) -> str:
+    """Return a result as JSON; a number that is not finite becomes null."""
+    return json.dumps(_plain(result))
+
+
+def print_json(result: dict[str, Any]) -> None:
+    """Print one JSON object on standard output."""
+    typer.echo(json_text(result))
+
+
+def _plain(value: Any) -> Any:
+    """Return a value as JSON can hold it."""
+    if isinstance(value, dict):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if hasattr(value, "tolist"):
+        return _plain(value.tolist())
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    return value
+
+
+@contextlib.contextmanager
+def stage(name: str) -> Iterator[None]:
+    """Show a stage of the work and the time it took, on standard error of a terminal."""
+    start = time.perf_counter()
+    if sys.stderr.isatty():
+        typer.echo(f"  {name} …", err=True, nl=False)
+    try:
+        yield
+    finally:
+        if sys.stderr.isatty():
+            typer.echo(f"\r  {name:<28} {time.perf_counter() - start:6.2f} s", err=True)
+
+
+def writable_folder(folder: Path) -> Path:
+    """Return the folder, made if need be; raises ConfigError before any work if nothing can be written there."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe = folder / ".tethership-probe"
+        probe.write_bytes(b"")
+        probe.unlink()
+    except OSError as error:
+        raise ConfigError(
+            f"cannot write into {folder}: {error.strerror or error}; choose another folder with --out"
+        ) from error
+    return folder
+
+
+def table(rows: list[tuple[str, str, str]], title: str) -> None:
+    """Print rows of (quantity, value, unit) on standard output."""
+    width = max(len(row[0]) for row in rows)
+    typer.echo(title)
+    for name, value, unit in rows:
+        typer.echo(f"  {name:<{width}}  {value:>12}  {unit}".rstrip())

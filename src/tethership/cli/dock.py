@@ -1,0 +1,198 @@
+"""`tethership dock`: trim, fly, print the metrics, write the flight and its picture."""
+
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tethership.cli.common import (
+    NO_ANSWER,
+    FormulationOption,
+    JsonOption,
+    OutOption,
+    ScenarioArgument,
+    SetOption,
+    WindOption,
+    chosen_scenario,
+    print_json,
+    stage,
+    table,
+    writable_folder,
+)
+from tethership.errors import ConfigError
+from tethership.scenario import Scenario
+
+if TYPE_CHECKING:
+    from tethership.analysis import TrimPoint
+    from tethership.simulation import Flight
+
+EXAMPLE = "Example: tethership dock --wind 12 --layers rewind,heading --out flights/12"
+
+
+def dock(
+    scenario: ScenarioArgument = "docking",
+    wind: WindOption = None,
+    formulation: FormulationOption = None,
+    layers: Annotated[
+        str | None,
+        typer.Option(help="Of rewind,heading,navigation, by commas; none for SAS alone. Default: the scenario's."),
+    ] = None,
+    no_sas: Annotated[bool, typer.Option("--no-sas", help="Switch SAS/attitude off.")] = False,
+    solver: Annotated[str, typer.Option(help="adaptive, tight, fixed, or a path that ends in .toml.")] = "adaptive",
+    from_: Annotated[Path | None, typer.Option("--from", help="Fly the stored input of a flight file again.")] = None,
+    changes: SetOption = None,
+    out: OutOption = Path("out"),
+    json: JsonOption = False,
+) -> None:
+    """Trim the ship on its cable, fly the docking manoeuvre and show what happened.
+
+    Writes flight.nc (labelled data with the full input) and docking.png (the paper's four panels) into --out.
+    """
+    if from_ is not None and (wind, formulation, layers, changes) != (None, None, None, None):
+        raise ConfigError("--from flies the stored input as it is; leave out --wind, --formulation, --layers, --set")
+    writable_folder(out)
+    if from_ is not None:
+        flown_scenario, flight, trim_outcome = _again(from_)
+    else:
+        flown_scenario = chosen_scenario(scenario, wind, formulation, changes)
+        names = None if layers is None else _split(layers)
+        flown_scenario.law(names)  # a wrong name is found before anything is computed
+        point = _trimmed(flown_scenario, json)
+        trim_outcome = point.outcome.name
+        flight = _flown(flown_scenario, point, names, False if no_sas else None, solver)
+    flight.save(out / "flight.nc")
+    result = summary(flown_scenario, flight) | {"trim_outcome": trim_outcome}
+    result["files"] = [str(out / "flight.nc"), *_drawn(flight, out)]
+    if json:
+        print_json(result)
+    else:
+        _print(result, flight)
+    if not flight.outcome.is_answer:
+        raise typer.Exit(NO_ANSWER)
+
+
+def _split(layers: str) -> tuple[str, ...]:
+    """Return the layers of a comma-separated list; `none` or nothing for none."""
+    names = tuple(name.strip() for name in layers.split(",") if name.strip())
+    return () if names == ("none",) else names
+
+
+def _trimmed(scenario: Scenario, as_json: bool) -> "TrimPoint":
+    """Return the trim, or say that there is none and exit."""
+    from tethership.analysis import TrimOutcome, trim
+
+    with stage("trim"):
+        point = trim(scenario)
+    if point.outcome is TrimOutcome.no_equilibrium:
+        if as_json:
+            print_json({"outcome": point.outcome.name, "message": point.outcome.value, "residual": point.residual})
+        typer.echo(f"tethership: {point.outcome.value}", err=True)
+        raise typer.Exit(NO_ANSWER)
+    if point.saturated:
+        typer.echo(f"tethership: warning: {point.outcome.value} ({', '.join(point.saturated)})", err=True)
+    return point
+
+
+class _Stages:
+    """Progress of a flight on a terminal: compiling until the first call, then flying."""
+
+    def __init__(self, limit: float) -> None:
+        self.limit = limit
+        self.start = time.perf_counter()
+        self.compiled = False
+        self.shown = sys.stderr.isatty()
+        if self.shown:
+            typer.echo("  compile …", err=True, nl=False)
+
+    def __call__(self, reached: float) -> None:
+        if not self.shown:
+            return
+        if not self.compiled:
+            self.compiled = True
+            typer.echo(f"\r  {'compile':<28} {time.perf_counter() - self.start:6.2f} s", err=True)
+            self.start = time.perf_counter()
+        typer.echo(f"\r  fly: {reached:7.1f} s of at most {self.limit:.0f} s", err=True, nl=False)
+
+    def done(self) -> None:
+        """Close the line."""
+        if self.shown:
+            typer.echo(f"\r  {'fly':<28} {time.perf_counter() - self.start:6.2f} s      ", err=True)
+
+
+def _flown(
+    scenario: Scenario, point: "TrimPoint", layers: tuple[str, ...] | None, sas: bool | None, solver: str
+) -> "Flight":
+    from tethership.simulation import dock as fly
+
+    stages = _Stages(scenario.config.stop.time_limit)
+    flight = fly(scenario, point, layers, sas, solver, stages)
+    stages.done()
+    return flight
+
+
+def _again(path: Path) -> tuple[Scenario, "Flight", str]:
+    """Return scenario and flight of a stored input."""
+    from tethership.simulation import fly_again
+
+    stages = _Stages(float("inf"))
+    scenario, flight = fly_again(path, stages)
+    stages.done()
+    return scenario, flight, "stored"
+
+
+def _drawn(flight: "Flight", out: Path) -> list[str]:
+    """Draw the picture and return its path; a flight too short to draw has none."""
+    from tethership.view import plot_docking
+
+    if flight.data.sizes["time"] < 2:
+        return []
+    with stage("draw"):
+        path = out / "docking.png"
+        plot_docking(flight).savefig(path, dpi=120)
+    return [str(path)]
+
+
+def summary(scenario: Scenario, flight: "Flight") -> dict[str, Any]:
+    """Return the keys that scripts may rely on, SI, θ_rms in degrees."""
+    return {
+        "outcome": flight.outcome.name,
+        "message": flight.outcome.value,
+        "docking_time": flight.docking_time,
+        "flight_time": float(flight.data["time"][-1]) if flight.data.sizes["time"] else 0.0,
+        **flight.metrics,
+        "wind": scenario.config.wind.speed,
+        "layers": flight.attributes["layers"],
+        "sas": flight.attributes["sas"],
+        "formulation": scenario.formulation,
+        "steps": flight.attributes["steps"],
+    }
+
+
+def _print(result: dict[str, Any], flight: "Flight") -> None:
+    """Print the metrics as a table."""
+    limits = flight.attributes["limits"]
+    layers = " + ".join(result["layers"]) or "constant rewind"
+    rows = [
+        ("outcome", result["outcome"], ""),
+        ("flight time", f"{result['flight_time']:.2f}", "s"),
+        ("largest tension", f"{result['tension_max']:.1f}", "N"),
+        ("mean tension", f"{result['tension_mean']:.1f}", "N"),
+        ("slowest rewind rate", f"{result['rewind_rate_min']:.3f}", "m/s"),
+        *[
+            (f"time above {limit:g} N", f"{seconds:.2f}", "s")
+            for limit, seconds in zip(limits, result["seconds_above"], strict=True)
+        ],
+        ("actuator duty cycle ADC", f"{result['ADC']:.3f}", "1/s"),
+        ("control energy E", f"{result['E']:.3f}", ""),
+        ("pitch, root mean square", f"{result['theta_rms']:.2f}", "deg"),
+        ("least hull clearance", f"{result['clearance_min']:.2f}", "m"),
+        ("time with a throttle saturated", f"{result['saturated_seconds']:.2f}", "s"),
+        ("jumps of the misalignment", str(result["misalignment_jumps"]), ""),
+    ]
+    sas = "SAS, " if result["sas"] else ""
+    table(rows, f"wind {result['wind']:g} m/s, {sas}{layers}, formulation {result['formulation']}")
+    typer.echo(flight.outcome.value)
+    for path in result["files"]:
+        typer.echo(f"wrote {path}")

@@ -1,0 +1,68 @@
+"""`tethership list`, `validate` and `new`: what is packaged, checking a file, a copy to edit."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tethership.cli.common import JsonOption, print_json
+from tethership.errors import ConfigError
+from tethership.scenario.load import check_file, describe_packaged, packaged_text
+
+LIST_EXAMPLE = "Example: tethership list"
+VALIDATE_EXAMPLE = "Example: tethership validate my_docking.toml"
+NEW_EXAMPLE = "Example: tethership new my_docking"
+
+
+def list_(json: JsonOption = False) -> None:
+    """List the packaged scenarios, vehicles and solver settings."""
+    found = describe_packaged()
+    if json:
+        print_json(found)
+        return
+    for kind, entries in found.items():
+        typer.echo(kind)
+        for name, meaning in entries.items():
+            typer.echo(f"  {name:<12} {meaning}")
+
+
+def validate(
+    file: Annotated[str, typer.Argument(help="A scenario, vehicle or solver file that ends in .toml.")],
+    json: JsonOption = False,
+) -> None:
+    """Check a file: every key, unit and value, and whether the parts fit together."""
+    kind = check_file(file)
+    if json:
+        print_json({"file": file, "valid": True, "kind": kind})
+    else:
+        typer.echo(f"{file}: a valid {kind}")
+
+
+def new(
+    name: Annotated[str, typer.Argument(help="Name of the new scenario; NAME.toml and NAME_vehicle.toml are written.")],
+    scenario: Annotated[str, typer.Option("--from", help="Packaged scenario to copy.")] = "docking",
+    out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path(),
+    json: JsonOption = False,
+) -> None:
+    """Write a commented copy of a packaged scenario and its vehicle, to edit."""
+    text = packaged_text("scenarios", scenario)
+    vehicle = next(line for line in text.splitlines() if line.startswith("vehicle ="))
+    source = vehicle.split('"')[1]
+    texts = {
+        out / f"{name}.toml": text.replace(vehicle, f'vehicle = "{name}_vehicle.toml"'),
+        out / f"{name}_vehicle.toml": packaged_text("vehicles", source),
+    }
+    for path in texts:
+        if path.exists():
+            raise ConfigError(f"{path} exists already; nothing is overwritten: choose another name or folder")
+    for path, content in texts.items():
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(content, encoding="utf-8")
+        except OSError as error:
+            raise ConfigError(f"cannot write {path}: {error.strerror or error}; choose --out") from error
+    if json:
+        print_json({"files": [str(path) for path in texts]})
+    else:
+        for path in texts:
+            typer.echo(f"wrote {path}")

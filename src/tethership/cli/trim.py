@@ -1,0 +1,88 @@
+"""`tethership trim`: the equilibrium of a scenario."""
+
+from typing import Annotated
+
+import numpy as np
+import typer
+
+from tethership.cli.common import (
+    NO_ANSWER,
+    FormulationOption,
+    JsonOption,
+    OutOption,
+    ScenarioArgument,
+    SetOption,
+    WindOption,
+    chosen_scenario,
+    json_text,
+    print_json,
+    stage,
+    table,
+    writable_folder,
+)
+
+EXAMPLE = "Example: tethership trim aerostat --wind 10 --json"
+
+ANGLES = ("phi", "theta", "psi")
+
+
+def trim(
+    scenario: ScenarioArgument = "docking",
+    wind: WindOption = None,
+    formulation: FormulationOption = None,
+    unknowns: Annotated[
+        str | None,
+        typer.Option(
+            help="What is looked for, by commas: velocity_north … phi … down, thrusters, throttle, deflection."
+        ),
+    ] = None,
+    changes: SetOption = None,
+    out: OutOption | None = None,
+    json: JsonOption = False,
+) -> None:
+    """Find where the ship rests or flies steadily; throttles of least norm where there is a choice.
+
+    With --out the result is also written there as trim.json.
+    """
+    from tethership.analysis import TrimOutcome
+    from tethership.analysis import trim as solve
+    from tethership.system.state import STATE_NAMES
+
+    folder = None if out is None else writable_folder(out)
+    loaded = chosen_scenario(scenario, wind, formulation, changes)
+    names = None if unknowns is None else [name.strip() for name in unknowns.split(",")]
+    with stage("trim"):
+        point = solve(loaded, names)
+    values = np.asarray(point.state.as_vector())
+    state = {
+        name: float(np.degrees(value)) if name in ANGLES else float(value)
+        for name, value in zip(STATE_NAMES, values, strict=True)
+    }
+    result = {
+        "outcome": point.outcome.name,
+        "message": point.outcome.value,
+        "throttle": point.command.throttle,
+        "deflection": np.degrees(point.command.deflection),
+        "tension": point.tension,
+        "residual": point.residual,
+        "saturated": list(point.saturated),
+        "state": state,
+        "wind": loaded.config.wind.speed,
+        "formulation": loaded.formulation,
+    }
+    if folder is not None:
+        (folder / "trim.json").write_text(json_text(result), encoding="utf-8")
+    if json:
+        print_json(result)
+    else:
+        vehicle = loaded.config.vehicle
+        rows = [(t.name, f"{d:.4f}", "") for t, d in zip(vehicle.thrusters, point.command.throttle, strict=True)]
+        rows += [
+            (f"tension {c.name}", f"{t:.2f}", "N") for c, t in zip(loaded.config.cables, point.tension, strict=True)
+        ]
+        units = dict.fromkeys(ANGLES, "deg") | dict.fromkeys("uvw", "m/s") | dict.fromkeys("pqr", "rad/s")
+        rows += [(name, f"{value:.4f}", units.get(name, "m")) for name, value in state.items()]
+        rows += [("largest residual", f"{np.abs(np.asarray(point.residual)).max():.2e}", "N, N m")]
+        table(rows, f"{point.outcome.name}: {point.outcome.value}")
+    if point.outcome is not TrimOutcome.converged:
+        raise typer.Exit(NO_ANSWER)

@@ -1,0 +1,133 @@
+"""The docking figure: a flight from three sides and its time histories. Depends on: matplotlib, view."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from tethership.simulation import Flight
+from tethership.view import style
+from tethership.view.histories import draw_histories
+from tethership.view.projection import FROM_EAST, FROM_NORTH, FROM_TOP
+from tethership.view.snapshots import Snapshots, take_snapshots
+from tethership.view.trajectory import draw_view
+
+SIZE = (12.5, 9.6)
+"""Width and height of the figure [inch]."""
+
+POINTS = ["N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"]
+"""Points of the compass, clockwise."""
+
+
+def plot_docking(flight: Flight, figure: Figure | None = None) -> Figure:
+    """Draw a docking flight as the four panels of Fig. 12 of Riboldi et al.
+
+    Seen from north (top left; east is on the left), from east (top right; north is on the right) and from the top
+    (bottom right), all with equal scales in metres: the ship every 4 s (longer flights: 8 s, 16 s, …), green at the
+    start and red at the end, cables dashed, the path of the centre of buoyancy B red. Bottom left, against time [s]:
+    cable length and distance of tether point and anchor [m], tension at the tether point [N] with the limits watched,
+    rewind rate [m/s]; dots are the snapshots, gusts are shaded.
+
+    Parameters
+    ----------
+    flight : Flight
+        From `dock` or `Flight.load`; any number of cables.
+    figure : Figure, optional
+        Draw into this figure, which is cleared, instead of into a new one of 12.5 by 9.6 inches.
+
+    Returns
+    -------
+    Figure
+        Not shown and not saved: ``plot_docking(flight).savefig("docking.png", dpi=150)``.
+
+    Raises
+    ------
+    ConfigError
+        The scenario that the flight carries cannot be read by this version.
+    """
+    snapshots = take_snapshots(flight)
+    figure = Figure(figsize=SIZE) if figure is None else figure
+    figure.clear()
+    figure.set_facecolor("white")
+    north, east, top, histories = _layout(figure)
+    draw_view(north, snapshots, FROM_NORTH)
+    draw_view(east, snapshots, FROM_EAST)
+    draw_view(top, snapshots, FROM_TOP)
+    draw_histories(histories, snapshots)
+    _title(figure, snapshots)
+    _legend(figure, snapshots)
+    return figure
+
+
+def _layout(figure: Figure) -> tuple[Axes, Axes, Axes, tuple[Axes, Axes, Axes]]:
+    """Return the axes of the views from north, east and top, and of the histories."""
+    left, right, low, high, gap = 0.065, 0.985, 0.06, 0.865, 0.075
+    middle = 0.5 * (low + high)
+    upper = figure.add_gridspec(1, 2, left=left, right=right, bottom=middle + 0.5 * gap, top=high, wspace=0.14)
+    lower = figure.add_gridspec(1, 2, left=left, right=right, bottom=low, top=middle - 0.5 * gap, wspace=0.14)
+    north, east = (figure.add_subplot(cell) for cell in upper)
+    cell = lower[0].get_position(figure)
+    stack = figure.add_gridspec(
+        3, 1, left=cell.x0, right=cell.x1 - 0.09, bottom=low, top=cell.y1, hspace=0.12, height_ratios=[1.0, 1.7, 0.8]
+    )
+    top = figure.add_subplot(lower[1])
+    lengths = figure.add_subplot(stack[0])
+    tensions = figure.add_subplot(stack[1], sharex=lengths)
+    rates = figure.add_subplot(stack[2], sharex=lengths)
+    return north, east, top, (lengths, tensions, rates)
+
+
+def _title(figure: Figure, snapshots: Snapshots) -> None:
+    """Write the scenario's title and, below it, how it was flown and how it ended."""
+    attributes, config = snapshots.flight.attributes, snapshots.config
+    wind = config.wind
+    layers = ", ".join(attributes["layers"]) or "none"
+    parts = [
+        f"wind {wind.speed:.3g} m/s from {compass(wind.from_direction)}",
+        *(f"gust from {compass(gust.from_direction)} at {gust.start:g} s" for gust in config.gusts[:2]),
+        f"layers: {layers}" + ("" if attributes["sas"] else " (no SAS)"),
+        f"{attributes['formulation']} formulation",
+        f"{attributes['outcome'].replace('_', ' ')} after {snapshots.time[-1]:.1f} s",
+    ]
+    figure.text(0.065, 0.972, config.title, fontsize=style.FONT + 4, weight="bold", color=style.INK, va="center")
+    figure.text(0.065, 0.944, "   ·   ".join(parts), fontsize=style.FONT + 1, color=style.INK, va="center")
+
+
+def compass(azimuth: float) -> str:
+    """Return the point of the compass of an azimuth [rad], clockwise from north."""
+    return POINTS[round(float(np.degrees(azimuth)) / 22.5) % 16]
+
+
+def _legend(figure: Figure, snapshots: Snapshots) -> None:
+    """Explain the views in one row below the title."""
+
+    def ship(colour: str, label: str) -> Patch:
+        return Patch(facecolor=(colour, 0.22), edgecolor=colour, linewidth=1.2, label=label)
+
+    handles: list[Patch | Line2D] = [
+        ship(style.START, "start"),
+        ship(style.BETWEEN, f"every {snapshots.interval:g} s"),
+        ship(style.END, "end"),
+        Line2D([], [], color=style.END, linewidth=1.3, label="path of the centre of buoyancy B"),
+    ]
+    several = len(snapshots.cables) > 1
+    for cable, name in enumerate(snapshots.cables):
+        label = f"cable {name}" if several else "cable"
+        handles.append(
+            Line2D([], [], color=style.cable_colour(cable), linewidth=1.0, linestyle=(0, (4, 2)), label=label)
+        )
+    if snapshots.cables:
+        handles.append(Line2D([], [], color=style.INK, marker="^", linestyle="none", label="anchor"))
+    if snapshots.config.gusts:
+        handles.append(Patch(facecolor=style.GUST, label="gust"))
+    figure.legend(
+        handles=handles,
+        loc="center left",
+        bbox_to_anchor=(0.06, 0.915),
+        ncols=len(handles),
+        fontsize=style.FONT,
+        frameon=False,
+        borderaxespad=0.0,
+        columnspacing=1.8,
+    )
