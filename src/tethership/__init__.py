@@ -59,6 +59,8 @@ _HOMES = {
     "trim": "analysis",
 }
 
+_PARTS = ("analysis", "control", "physics", "results", "scenario", "simulation", "spatial", "system", "view")
+
 __all__ = [
     "AbstractLaw",
     "ConfigError",
@@ -85,6 +87,8 @@ def __getattr__(name: str) -> Any:
     """Import a public name when it is first used: the command line then starts without what it does not need."""
     if name in _HOMES:
         return getattr(importlib.import_module(f"tethership.{_HOMES[name]}"), name)
+    if name in _PARTS:
+        return importlib.import_module(f"tethership.{name}")
     raise AttributeError(f"module 'tethership' has no attribute {name!r}")
 
 

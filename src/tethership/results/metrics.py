@@ -8,36 +8,39 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-def peak(time: Array, value: Array) -> float:
-    """Return the largest value of a sampled signal, a parabola laid through the samples around it.
+REFINEMENT = 8
+"""Points laid between two samples before a peak or a crossing is read off."""
+
+
+def refined(time: Array, value: Array) -> tuple[Array, Array]:
+    """Return a sampled signal with `REFINEMENT` times as many samples, by a cubic through four neighbours.
 
     Parameters
     ----------
     time : Array
         Times [s], rising, shape (n,).
     value : Array
-        Samples, shape (n,); the peak has their unit.
+        Samples, shape (n,), any unit.
+
+    Notes
+    -----
+    Catmull–Rom: between two samples a cubic with the slopes of central differences. A snap of the cable lasts a few
+    samples; straight lines would cut its peak by 1 % and its time over a threshold by 3 %.
     """
-    top = int(np.argmax(value))
-    if not 0 < top < len(value) - 1:
-        return float(value[top])
-    before, after = time[top] - time[top - 1], time[top + 1] - time[top]
-    if before <= 0 or after <= 0:
-        return float(value[top])
-    rise = (value[top] - value[top - 1]) / before
-    fall = (value[top + 1] - value[top]) / after
-    curvature = (fall - rise) / (before + after)
-    slope = (rise * after + fall * before) / (before + after)
-    if curvature >= 0:
-        return float(value[top])
-    gain = -(slope**2) / (4.0 * curvature)
-    return float(value[top] + min(gain, abs(value[top]) * 0.05))
-
-
-def mean(time: Array, value: Array) -> float:
-    """Return the time average of a signal, trapezoidal; unit of the value."""
-    span = time[-1] - time[0]
-    return float(np.trapezoid(value, time) / span) if span > 0 else float(value[0])
+    if len(time) < 4:
+        return time, value
+    slope = np.gradient(value, time)
+    step = np.diff(time)[:, None]
+    share = np.arange(REFINEMENT) / REFINEMENT
+    start, end = value[:-1, None], value[1:, None]
+    between = (
+        (1 + 2 * share) * (1 - share) ** 2 * start
+        + share * (1 - share) ** 2 * step * slope[:-1, None]
+        + share**2 * (3 - 2 * share) * end
+        - share**2 * (1 - share) * step * slope[1:, None]
+    )
+    times = time[:-1, None] + share * step
+    return np.append(times.ravel(), time[-1]), np.append(between.ravel(), value[-1])
 
 
 def seconds_above(time: Array, value: Array, threshold: float) -> float:
@@ -50,6 +53,12 @@ def seconds_above(time: Array, value: Array, threshold: float) -> float:
         (start > 0) & (end > 0), 1.0, np.where(start > 0, crossing, np.where(end > 0, 1.0 - crossing, 0.0))
     )
     return float(np.sum(share * step))
+
+
+def mean(time: Array, value: Array) -> float:
+    """Return the time average of a signal, trapezoidal; unit of the value."""
+    span = time[-1] - time[0]
+    return float(np.trapezoid(value, time) / span) if span > 0 else float(value[0])
 
 
 def duty_cycle(time: Array, throttle: Array) -> float:
@@ -88,22 +97,24 @@ def docking_metrics(flight: dict[str, Array], limits: list[float]) -> dict[str, 
 
     Notes
     -----
-    Tension is that at the tether point of the cable that pulls hardest. θ_rms is returned in degrees, all else in
+    Tension is that at the tether point of the cable that pulls hardest, refined before its peak and its time over a
+    limit are read off. θ_rms is returned in degrees, all else in
     SI. Without a cable the tension metrics are NaN-free zeros.
     """
     time = flight["time"]
     tensions = flight["tension"]
     cables = tensions.shape[1]
     tension = tensions.max(axis=1) if cables else np.zeros_like(time)
+    fine_time, fine_tension = refined(time, tension)
     pitch = flight["attitude"][:, 1]
     rates = flight["rewind_rate"]
     chi = flight["misalignment"]
     sag = flight["cable_clearance"]
     return {
-        "tension_max": max((peak(time, tensions[:, i]) for i in range(cables)), default=0.0),
+        "tension_max": float(fine_tension.max()),
         "tension_mean": mean(time, tension),
         "rewind_rate_min": float(rates.min()) if cables else 0.0,
-        "seconds_above": [seconds_above(time, tension, limit) for limit in limits],
+        "seconds_above": [seconds_above(fine_time, fine_tension, limit) for limit in limits],
         "ADC": duty_cycle(time, flight["throttle"]),
         "E": float(control_energy(time, flight["throttle"])),
         "theta_rms": float(np.degrees(np.sqrt(mean(time, pitch**2)))),

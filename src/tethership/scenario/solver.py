@@ -36,5 +36,5 @@ class SolverConfig(Table):
     absolute_tolerance: float = Field(1e-6, gt=0, le=1e-2)
     largest_step: Annotated[float, Quantity("s", positive=True)] = 0.25
     smallest_step: Annotated[float, Quantity("s", positive=True)] = 1e-3
-    output_interval: Annotated[float, Quantity("s", positive=True)] = 0.025
+    output_interval: Annotated[float, Quantity("s", positive=True)] = 0.0125
     most_steps: int = Field(400_000, gt=0)

@@ -18,7 +18,7 @@ from tethership.simulation.closed_loop import ClosedLoop
 from tethership.simulation.events import StopConditions
 from tethership.simulation.record import record
 
-SAMPLES = 800
+SAMPLES = 1600
 """Samples in a segment."""
 
 FIRST_STEP = 0.01

@@ -10,7 +10,7 @@ from tethership.simulation.closed_loop import ClosedLoop, Instant
 from tethership.spatial import rotation_matrix, safe_norm
 from tethership.system.tethered import Cable, CableState, end_tension
 
-CURVE_POINTS = 25
+CURVE_POINTS = 17
 """Points of a cable that are kept."""
 
 

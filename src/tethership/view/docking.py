@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from tethership.scenario.schema import GustConfig
 from tethership.simulation import Flight
 from tethership.view import style
 from tethership.view.histories import draw_histories
@@ -13,8 +14,11 @@ from tethership.view.projection import FROM_EAST, FROM_NORTH, FROM_TOP
 from tethership.view.snapshots import Snapshots, take_snapshots
 from tethership.view.trajectory import draw_view
 
-SIZE = (12.5, 9.6)
+SIZE = (10.8, 8.6)
 """Width and height of the figure [inch]."""
+
+LEFT = 0.075
+"""Left margin, over the figure's width [-]."""
 
 POINTS = ["N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"]
 """Points of the compass, clockwise."""
@@ -34,7 +38,7 @@ def plot_docking(flight: Flight, figure: Figure | None = None) -> Figure:
     flight : Flight
         From `dock` or `Flight.load`; any number of cables.
     figure : Figure, optional
-        Draw into this figure, which is cleared, instead of into a new one of 12.5 by 9.6 inches.
+        Draw into this figure, which is cleared, instead of into a new one of 10.8 by 8.6 inches.
 
     Returns
     -------
@@ -62,14 +66,14 @@ def plot_docking(flight: Flight, figure: Figure | None = None) -> Figure:
 
 def _layout(figure: Figure) -> tuple[Axes, Axes, Axes, tuple[Axes, Axes, Axes]]:
     """Return the axes of the views from north, east and top, and of the histories."""
-    left, right, low, high, gap = 0.065, 0.985, 0.06, 0.865, 0.075
+    left, right, low, high, gap = LEFT, 0.985, 0.06, 0.865, 0.075
     middle = 0.5 * (low + high)
-    upper = figure.add_gridspec(1, 2, left=left, right=right, bottom=middle + 0.5 * gap, top=high, wspace=0.14)
-    lower = figure.add_gridspec(1, 2, left=left, right=right, bottom=low, top=middle - 0.5 * gap, wspace=0.14)
+    upper = figure.add_gridspec(1, 2, left=left, right=right, bottom=middle + 0.5 * gap, top=high, wspace=0.16)
+    lower = figure.add_gridspec(1, 2, left=left, right=right, bottom=low, top=middle - 0.5 * gap, wspace=0.16)
     north, east = (figure.add_subplot(cell) for cell in upper)
     cell = lower[0].get_position(figure)
     stack = figure.add_gridspec(
-        3, 1, left=cell.x0, right=cell.x1 - 0.09, bottom=low, top=cell.y1, hspace=0.12, height_ratios=[1.0, 1.7, 0.8]
+        3, 1, left=cell.x0, right=cell.x1 - 0.125, bottom=low, top=cell.y1, hspace=0.12, height_ratios=[1.0, 1.7, 0.8]
     )
     top = figure.add_subplot(lower[1])
     lengths = figure.add_subplot(stack[0])
@@ -85,13 +89,20 @@ def _title(figure: Figure, snapshots: Snapshots) -> None:
     layers = ", ".join(attributes["layers"]) or "none"
     parts = [
         f"wind {wind.speed:.3g} m/s from {compass(wind.from_direction)}",
-        *(f"gust from {compass(gust.from_direction)} at {gust.start:g} s" for gust in config.gusts[:2]),
+        *_gusts(config.gusts),
         f"layers: {layers}" + ("" if attributes["sas"] else " (no SAS)"),
         f"{attributes['formulation']} formulation",
         f"{attributes['outcome'].replace('_', ' ')} after {snapshots.time[-1]:.1f} s",
     ]
-    figure.text(0.065, 0.972, config.title, fontsize=style.FONT + 4, weight="bold", color=style.INK, va="center")
-    figure.text(0.065, 0.944, "   ·   ".join(parts), fontsize=style.FONT + 1, color=style.INK, va="center")
+    figure.text(LEFT, 0.972, config.title, fontsize=style.FONT + 4, weight="bold", color=style.INK, va="center")
+    figure.text(LEFT, 0.944, "  ·  ".join(parts), fontsize=style.FONT, color=style.INK, va="center")
+
+
+def _gusts(gusts: tuple[GustConfig, ...]) -> list[str]:
+    """Return what is said of the gusts."""
+    if len(gusts) > 1:
+        return [f"{len(gusts)} gusts"]
+    return [f"gust from {compass(gust.from_direction)} at {gust.start:g} s" for gust in gusts]
 
 
 def compass(azimuth: float) -> str:
@@ -109,14 +120,12 @@ def _legend(figure: Figure, snapshots: Snapshots) -> None:
         ship(style.START, "start"),
         ship(style.BETWEEN, f"every {snapshots.interval:g} s"),
         ship(style.END, "end"),
-        Line2D([], [], color=style.END, linewidth=1.3, label="path of the centre of buoyancy B"),
+        Line2D([], [], color=style.END, linewidth=1.3, label="centre of buoyancy B"),
     ]
-    several = len(snapshots.cables) > 1
-    for cable, name in enumerate(snapshots.cables):
-        label = f"cable {name}" if several else "cable"
-        handles.append(
-            Line2D([], [], color=style.cable_colour(cable), linewidth=1.0, linestyle=(0, (4, 2)), label=label)
-        )
+    handles += [
+        Line2D([], [], color=style.cable_colour(i), linewidth=1.0, linestyle=(0, (4, 2)), label=label)
+        for i, label in enumerate(_cable_labels(snapshots.cables))
+    ]
     if snapshots.cables:
         handles.append(Line2D([], [], color=style.INK, marker="^", linestyle="none", label="anchor"))
     if snapshots.config.gusts:
@@ -124,10 +133,17 @@ def _legend(figure: Figure, snapshots: Snapshots) -> None:
     figure.legend(
         handles=handles,
         loc="center left",
-        bbox_to_anchor=(0.06, 0.915),
+        bbox_to_anchor=(LEFT - 0.005, 0.915),
         ncols=len(handles),
         fontsize=style.FONT,
         frameon=False,
         borderaxespad=0.0,
         columnspacing=1.8,
     )
+
+
+def _cable_labels(names: list[str]) -> list[str]:
+    """Return the cables' labels, as many as the row has room for."""
+    if len(names) in (2, 3, 4):
+        return [f"cable {name}" for name in names]
+    return ["cable" if len(names) == 1 else "cables"][: len(names)]

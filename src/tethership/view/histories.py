@@ -2,12 +2,18 @@
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+from matplotlib.typing import LineStyleType
 from numpy.typing import NDArray
 
 from tethership.view import style
 from tethership.view.snapshots import Snapshots
 
 Array = NDArray[np.float64]
+
+DISTANCE: LineStyleType = (0.0, (3.0, 1.5))
+"""Dashes of distances."""
 
 LABEL_GAP = 0.085
 """Least distance of two labels beside an axis, over its height [-]."""
@@ -24,22 +30,25 @@ def draw_histories(axes: tuple[Axes, Axes, Axes], snapshots: Snapshots) -> None:
         From `take_snapshots`; its instants are marked by dots.
     """
     lengths, tensions, rates = axes
-    for axis in axes:
+    for axis, label in zip(axes, ("length\n[m]", "tension\n[N]", "rewind rate\n[m/s]"), strict=True):
         _dress(axis, snapshots)
-    _draw_lengths(lengths, snapshots)
-    _draw_tensions(tensions, snapshots)
-    _draw_each(rates, snapshots, "rewind_rate")
-    rates.set_ylabel("rewind rate\n[m/s]", fontsize=style.FONT)
-    rates.set_xlabel("time [s]", fontsize=style.FONT)
-    rates.set_ylim(bottom=min(0.0, rates.get_ylim()[0]))
+        axis.set_ylabel(label, fontsize=style.FONT)
+        axis.yaxis.set_label_coords(-0.11, 0.5)
     lengths.set_title("Time histories", fontsize=style.FONT, color=style.INK, loc="left")
+    rates.set_xlabel("time [s]", fontsize=style.FONT)
     for axis in (lengths, tensions):
         axis.tick_params(labelbottom=False)
     if not snapshots.cables:
-        tensions.text(0.5, 0.5, "no cable", transform=tensions.transAxes, ha="center", fontsize=style.FONT)
+        for axis in axes:
+            axis.set_yticks([])
+            axis.text(0.5, 0.5, "no cable", transform=axis.transAxes, ha="center", va="center", fontsize=style.FONT)
+        return
+    _draw_lengths(lengths, snapshots)
+    _draw_tensions(tensions, snapshots)
+    _draw_rates(rates, snapshots)
 
 
-def _draw_each(axes: Axes, snapshots: Snapshots, name: str, linestyle: str = "-", dots: bool = True) -> None:
+def _draw_each(axes: Axes, snapshots: Snapshots, name: str, linestyle: LineStyleType = "-", dots: bool = True) -> None:
     """Draw an output of every cable in its unit, with dots at the snapshots."""
     values = snapshots.values(name)
     for cable, label in enumerate(snapshots.cables):
@@ -61,35 +70,35 @@ def _draw_each(axes: Axes, snapshots: Snapshots, name: str, linestyle: str = "-"
 def _draw_lengths(axes: Axes, snapshots: Snapshots) -> None:
     """Draw cable lengths and distances of tether points from anchors [m]."""
     _draw_each(axes, snapshots, "cable_length")
-    _draw_each(axes, snapshots, "distance", linestyle=(0, (3, 1.5)), dots=False)
-    axes.set_ylabel("length\n[m]", fontsize=style.FONT)
-    axes.set_ylim(0.0, 1.3 * axes.get_ylim()[1])
-    if not snapshots.cables:
-        return
-    several = len(snapshots.cables) > 1
-    handles = [line for line in axes.get_lines() if several or line.get_gid() in ("cable_length 0", "distance 0")]
-    ends = {"cable_length": "cable length", "distance": "anchor to tether point"}
-    names = [
-        f"{line.get_label()}: {ends[str(line.get_gid()).split()[0]]}"
-        if several
-        else ends[str(line.get_gid()).split()[0]]
-        for line in handles
+    _draw_each(axes, snapshots, "distance", linestyle=DISTANCE, dots=False)
+    axes.set_ylim(0.0, 1.55 * axes.get_ylim()[1])
+    axes.yaxis.set_major_locator(MaxNLocator(nbins=4, steps=[1, 2, 5, 10]))
+    handles = [
+        Line2D([], [], color=style.INK, linewidth=1.2, marker="o", markersize=3.2, label="cable length"),
+        Line2D([], [], color=style.INK, linewidth=1.2, linestyle=DISTANCE, label="anchor to tether point"),
     ]
-    axes.legend(handles, names, fontsize=style.SMALL, frameon=False, loc="upper right", ncols=2)
+    axes.legend(handles=handles, fontsize=style.SMALL, frameon=False, loc="upper right", ncols=2)
 
 
 def _draw_tensions(axes: Axes, snapshots: Snapshots) -> None:
     """Draw tensions at the tether points [N], logarithmic, with the limits watched."""
     _draw_each(axes, snapshots, "tension")
     tension = snapshots.values("tension")
-    limits = dict(snapshots.config.limits)
-    positive = tension[tension > 0]
-    low = float(positive.min()) if positive.size else 10.0
-    high = max([*limits.values(), float(tension.max(initial=0.0))])
+    limits = snapshots.flight.attributes["limits"]
+    low = float(np.min(tension, where=tension > 0.1, initial=100.0))
+    high = max(*limits, float(tension.max()))
     axes.set_yscale("log", nonpositive="clip")
-    axes.set_ylim(10.0 ** np.floor(np.log10(max(low, 0.1))), 1.5 * high)
-    axes.set_ylabel("tension\n[N]", fontsize=style.FONT)
-    _draw_limits(axes, list(limits), list(snapshots.flight.attributes["limits"]))
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.set_ylim(10.0 ** np.floor(np.log10(low)), 1.5 * high)
+    _draw_limits(axes, [name for name, _ in snapshots.config.limits], limits)
+
+
+def _draw_rates(axes: Axes, snapshots: Snapshots) -> None:
+    """Draw the rates at which the winches take cable in [m/s]."""
+    _draw_each(axes, snapshots, "rewind_rate")
+    rates = snapshots.values("rewind_rate")
+    low, high = min(0.0, float(rates.min())), max(0.1, float(rates.max()))
+    axes.set_ylim(low - 0.05 * (high - low), high + 0.15 * (high - low))
 
 
 def _draw_limits(axes: Axes, names: list[str], limits: list[float]) -> None:
@@ -102,7 +111,7 @@ def _draw_limits(axes: Axes, names: list[str], limits: list[float]) -> None:
         axes.text(
             1.015,
             place,
-            f"{name.replace('_', ' ')} {limit:g} N",
+            f"{name.replace('_', ' ')} {limit:g}",
             transform=axes.transAxes,
             fontsize=style.SMALL,
             color=colour,

@@ -48,7 +48,7 @@ class View(NamedTuple):
 _NORTH, _EAST, _DOWN = np.eye(3)
 
 FROM_NORTH = View(
-    "View from north",
+    "View from north (looking south)",
     ("← east [m]", "altitude [m]"),
     np.stack([_EAST, -_DOWN]),
     _NORTH,
@@ -56,8 +56,8 @@ FROM_NORTH = View(
 )
 """Looking south: east is on the left."""
 
-FROM_EAST = View("View from east", ("north [m] →", "altitude [m]"), np.stack([_NORTH, -_DOWN]), _EAST)
+FROM_EAST = View("View from east (looking west)", ("north [m] →", "altitude [m]"), np.stack([_NORTH, -_DOWN]), _EAST)
 """Looking west: north is on the right."""
 
-FROM_TOP = View("View from top", ("east [m] →", "north [m]"), np.stack([_EAST, _NORTH]), -_DOWN)
+FROM_TOP = View("View from top (looking down)", ("east [m] →", "north [m]"), np.stack([_EAST, _NORTH]), -_DOWN)
 """Looking down: north is up."""

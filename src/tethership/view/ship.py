@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 from numpy.typing import NDArray
@@ -46,7 +47,7 @@ class ShipShape(NamedTuple):
 @jax.jit
 def _sections(hull: BodyOfRevolution) -> tuple[Float[jax.Array, "n"], Float[jax.Array, "n"]]:
     """Return forward positions from the centre of volume [m] and radii [m] of the hull's sections."""
-    station = FRACTIONS * hull.length
+    station = jnp.asarray(FRACTIONS) * hull.length
     return hull.centre() - station, hull.radius(station)
 
 
@@ -104,7 +105,7 @@ def silhouette(shape: ShipShape, position: Array, rotation: Array, view: View) -
     (x cos γ, r) itself, which alone is left in a pure side view.
     """
     seen = view.project(rotation[:, 0])
-    cosine, sine = float(np.hypot(*seen)), abs(float(view.toward @ rotation[:, 0]))
+    cosine, sine = float(np.linalg.norm(seen)), abs(float(view.toward @ rotation[:, 0]))
     along = seen / cosine if cosine > 1e-9 else np.array([1.0, 0.0])
     across = np.array([-along[1], along[0]])
     centre, reach = shape.station * cosine, shape.radius * sine
@@ -121,10 +122,11 @@ def silhouette(shape: ShipShape, position: Array, rotation: Array, view: View) -
 def ship_outlines(shape: ShipShape, position: Array, rotation: Array, view: View) -> list[Array]:
     """Return the ship's polygons in a view [m], from the farthest to the nearest: fins behind, hull, fins ahead.
 
-    Parameters are those of `silhouette`.
+    Parameters are those of `silhouette`. A fin is ahead if it is on the viewer's side of the hull's axis, or, seen
+    along the axis, at the viewer's end.
     """
     corners = position + shape.fins @ rotation.T
-    depth = (shape.fins.mean(axis=1) - shape.axis) * np.array([0.0, 1.0, 1.0]) @ rotation.T @ view.toward
+    depth = (shape.fins.mean(axis=1) - shape.axis) * np.array([0.02, 1.0, 1.0]) @ rotation.T @ view.toward
     flat = view.project(corners)
     behind = [flat[i] for i in np.argsort(depth) if depth[i] <= 0.0]
     ahead = [flat[i] for i in np.argsort(depth) if depth[i] > 0.0]

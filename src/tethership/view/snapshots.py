@@ -6,6 +6,7 @@ import jax
 import numpy as np
 from numpy.typing import NDArray
 
+from tethership.errors import SolveError
 from tethership.scenario import ScenarioConfig
 from tethership.scenario.load import validated
 from tethership.simulation import Flight
@@ -99,7 +100,11 @@ def take_snapshots(flight: Flight) -> Snapshots:
     ------
     ConfigError
         The scenario that it carries cannot be read by this version.
+    SolveError
+        It diverged before its first sample: there is nothing to draw.
     """
+    if flight.data.sizes["time"] == 0:
+        raise SolveError("the flight has no sample to draw: it diverged at its start")
     attributes = flight.attributes
     config = validated(ScenarioConfig, attributes["scenario"], attributes["scenario_name"])
     shape = ship_shape(config.vehicle)

@@ -24,7 +24,7 @@ GUST = "#F6E7B0"
 CABLES = ("#0072B2", "#E69F00", "#CC79A7", "#56B4E9", "#000000")
 """Cables, in turn."""
 
-LIMITS = ("#6E6E6E", "#E69F00", "#D55E00", "#000000")
+LIMITS = ("#6E6E6E", "#8C510A", "#D55E00", "#000000")
 """Watched tensions, in turn."""
 
 FONT = 9.0

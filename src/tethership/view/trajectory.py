@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgba
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from tethership.view import style
@@ -13,7 +14,7 @@ from tethership.view.snapshots import Snapshots
 
 Array = NDArray[np.float64]
 
-MARGIN = 0.04
+MARGIN = 0.06
 """Space around what is drawn, over its size [-]."""
 
 
@@ -31,12 +32,24 @@ def draw_view(axes: Axes, snapshots: Snapshots, view: View) -> None:
     """
     path = view.project(snapshots.path)
     drawn = [path, _draw_ships(axes, snapshots, view), *_draw_cables(axes, snapshots, view)]
-    axes.plot(path[:, 0], path[:, 1], color=style.END, linewidth=1.3, zorder=5, gid="path")
-    _fit(axes, np.concatenate(drawn))
+    axes.plot(
+        path[:, 0],
+        path[:, 1],
+        color=style.END,
+        linewidth=1.3,
+        marker="o",
+        markersize=2.6,
+        markevery=snapshots.indices.tolist(),
+        zorder=5,
+        gid="path",
+    )
+    points = np.concatenate(drawn)
+    points = points[np.isfinite(points).all(axis=1)]
+    _fit(axes, points)
+    _dress(axes, view)
     if view.shows_altitude:
         _draw_ground(axes, snapshots.ground)
-    _draw_wind(axes, snapshots.values("wind")[0], view)
-    _dress(axes, view)
+    _draw_wind(axes, snapshots.values("wind")[0], view, points)
 
 
 def _order(count: int) -> list[int]:
@@ -87,7 +100,6 @@ def _draw_cables(axes: Axes, snapshots: Snapshots, view: View) -> list[Array]:
 
 def _fit(axes: Axes, points: Array) -> None:
     """Set the limits around points [m], with equal scales that fill the axes."""
-    points = points[np.isfinite(points).all(axis=1)]
     low, high = points.min(axis=0), points.max(axis=0)
     middle, size = 0.5 * (low + high), (1.0 + 2.0 * MARGIN) * (high - low)
     box = axes.get_window_extent()
@@ -104,18 +116,31 @@ def _draw_ground(axes: Axes, altitude: float) -> None:
     axes.axhline(altitude, color=style.INK, linewidth=1.0, zorder=1, gid="ground")
 
 
-def _draw_wind(axes: Axes, wind: Array, view: View) -> None:
-    """Draw an arrow along a wind in ground axes [m/s], shape (3,), unless it blows along the line of sight."""
+def _draw_wind(axes: Axes, wind: Array, view: View, points: Array) -> None:
+    """Draw an arrow along a wind in the emptier upper corner, unless it blows along the line of sight.
+
+    Parameters
+    ----------
+    axes : Axes
+        A view with its limits set.
+    wind : Array
+        Ground axes [m/s], shape (3,).
+    view : View
+        Where it is seen from.
+    points : Array
+        What is drawn, paper coordinates [m], shape (n, 2).
+    """
     speed = float(np.linalg.norm(wind))
     seen = view.project(wind / speed) if speed > 0 else np.zeros(2)
-    if np.hypot(*seen) < 0.3:
+    share = float(np.linalg.norm(seen))
+    if share < 0.3:
         return
-    seen = seen * np.array([-1.0 if view.leftward else 1.0, 1.0])
+    seen = seen / share * np.array([-1.0 if view.leftward else 1.0, 1.0])
     axes.annotate(
         "wind",
-        xy=tuple(np.array([0.91, 0.90]) + 0.06 * seen),
+        xy=tuple(_free_corner(axes, points) + 0.06 * seen),
         xycoords="axes fraction",
-        xytext=tuple(-36.0 * seen),
+        xytext=tuple(-34.0 * seen),
         textcoords="offset points",
         fontsize=style.SMALL,
         color=style.INK,
@@ -126,12 +151,22 @@ def _draw_wind(axes: Axes, wind: Array, view: View) -> None:
     )
 
 
+def _free_corner(axes: Axes, points: Array) -> Array:
+    """Return the upper corner with fewer points [m] around, right if it is all the same, over the axes' size [-]."""
+    place = axes.transAxes.inverted().transform(axes.transData.transform(points))
+    corners = np.array([[0.91, 0.88], [0.09, 0.88]])
+    crowd = [int(np.sum(np.all(np.abs(place - corner) < (0.09, 0.12), axis=1))) for corner in corners]
+    return corners[int(np.argmin(crowd))]
+
+
 def _dress(axes: Axes, view: View) -> None:
     """Label the axes."""
     axes.set_title(view.title, fontsize=style.FONT, color=style.INK, loc="left")
     axes.set_xlabel(view.labels[0], fontsize=style.FONT)
     axes.set_ylabel(view.labels[1], fontsize=style.FONT)
     axes.tick_params(labelsize=style.SMALL)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(nbins=8, steps=[1, 2, 5, 10]))
     axes.grid(color=style.GUIDE, linewidth=0.5)
     axes.set_axisbelow(True)
     if view.leftward:
