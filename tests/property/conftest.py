@@ -1,4 +1,4 @@
-"""Random cables for the property tests: geometries, loads and stiffnesses from a seed, none of them gentle."""
+"""Random cables for the property tests: geometries, loads and stiffnesses from a seed."""
 
 from typing import NamedTuple
 
@@ -14,7 +14,7 @@ class CableCases(NamedTuple):
     """A batch of cables; the arrays of a batch have the same first axis.
 
     `across` and `along` are the distances of the ends across and against the load over L, a and b; `stretch` is
-    wL/EA. `load` is short of the laws' LOAD_FLOOR, so that the load that they compute with is `weight` exactly.
+    wL/EA. `load` is short of the laws' LOAD_FLOOR, so that the load that they compute with is `full_load`.
     """
 
     stiffness: np.ndarray
@@ -84,6 +84,6 @@ def cables():
 
 
 @pytest.fixture(params=KINDS)
-def kind(request):
+def cable_kind(request):
     """Return each kind of cable in turn."""
     return request.param

@@ -1,9 +1,9 @@
-"""What must hold of both tension laws for any cable: balance, frames, units, continuity, and the root behind them.
+"""What must hold of both tension laws for any cable: balance, frames, units, continuity, and their root.
 
 Truth: invariances that no geometry may break, and the classical pair of equations of the extensible catenary
-(Irvine, *Cable Structures*, 1981, section 1.3) written out again here in extended precision. If this fails, the ship
-feels a force that the anchor does not give back, the cable knows where north is, or tension jumps while the cable
-comes taut, which is when it peaks.
+(Irvine, *Cable Structures*, 1981, section 1.3) written out again here in extended precision. If this fails,
+the ship feels a force that the anchor does not give back, the cable knows where north is, or tension jumps
+while the cable comes taut, which is when it peaks.
 """
 
 import jax
@@ -35,7 +35,8 @@ def published(stiffness):
 
 LAWS = {"elastic_catenary": elastic, "published": published}
 SINGLE = {
-    name: jax.jit(lambda ea, d, length, load, law=law: law(ea).force(d, length, load)) for name, law in LAWS.items()
+    name: jax.jit(lambda ea, d, length, load, law=law: law(ea).force(d, length, load))
+    for name, law in LAWS.items()
 }
 BATCH = {
     name: jax.jit(jax.vmap(lambda ea, d, length, load, law=law: law(ea).force(d, length, load)))
@@ -55,30 +56,32 @@ def forces(name, cases):
 def rounding(cases, ship):
     """Return the change of force [N] by which a relative error of 1e-14 in geometry or arithmetic shows.
 
-    Up to a hundred roundings of 1.1e-16. A cable that comes taut multiplies errors of position by EA/L, so that EA
-    counts there beside weight and force.
+    Up to a hundred roundings of 1.1e-16. A cable that comes taut multiplies errors of position by EA/L, so that
+    EA counts there beside weight and force.
     """
     amplified = cases.stiffness * (cases.elongation > 0.9)
     return 1e-14 * (cases.weight * cases.length + norm(ship) + amplified)
 
 
-# ------------------------------------------------------------------------------------------------ balance and frames
+# ----------------------------------------------------------------------------------------- balance and frames
 
 
 @pytest.mark.parametrize("name", LAWS)
-def test_both_ends_together_carry_the_load(name, cables, kind):
-    cases = cables(kind, COUNT, seed=1)
+def test_both_ends_together_carry_the_load(name, cables, cable_kind):
+    cases = cables(cable_kind, COUNT, seed=1)
     ship, anchor = forces(name, cases)
     hanging = np.ones(COUNT) if name == "elastic_catenary" else 1.0 - _joint_share(cases.elongation)
-    # the published law's joint fades the load out: what is left beyond e_c is (1 - share) L l, nothing when taut
+    # the published law's joint fades the load out: what is left beyond e_c is (1 - share) L l, nothing when
+    # taut
     expected = (hanging * cases.length)[:, None] * cases.full_load
     assert (norm(ship + anchor - expected) <= rounding(cases, ship)).all()
 
 
 @pytest.mark.parametrize("name", LAWS)
-def test_swapped_ends_feel_swapped_forces(name, cables, kind):
-    # The anchor's force is computed from the ship's; solving the same cable from its other end is a second opinion.
-    cases = cables(kind, COUNT, seed=2)
+def test_swapped_ends_feel_swapped_forces(name, cables, cable_kind):
+    # The anchor's force is computed from the ship's; solving the same cable from its other end is a second
+    # opinion.
+    cases = cables(cable_kind, COUNT, seed=2)
     ship, anchor = forces(name, cases)
     other_ship, other_anchor = forces(name, cases._replace(span=-cases.span))
     assert (norm(anchor - other_ship) <= rounding(cases, ship)).all()
@@ -86,8 +89,8 @@ def test_swapped_ends_feel_swapped_forces(name, cables, kind):
 
 
 @pytest.mark.parametrize("name", LAWS)
-def test_turning_span_and_load_turns_the_force(name, cables, kind):
-    cases = cables(kind, COUNT, seed=3)
+def test_turning_span_and_load_turns_the_force(name, cables, cable_kind):
+    cases = cables(cable_kind, COUNT, seed=3)
     turn = Rotation.random(COUNT, random_state=3).as_matrix()
 
     def turned(vectors):
@@ -101,9 +104,9 @@ def test_turning_span_and_load_turns_the_force(name, cables, kind):
 
 
 @pytest.mark.parametrize("name", LAWS)
-def test_a_longer_cable_of_the_same_proportions_pulls_in_proportion(name, cables, kind):
+def test_a_longer_cable_of_the_same_proportions_pulls_in_proportion(name, cables, cable_kind):
     # Dimensional analysis: lengths times 3, load times 7, stiffness times 21 give 21 times the force.
-    cases = cables(kind, COUNT, seed=4)
+    cases = cables(cable_kind, COUNT, seed=4)
     ship, _ = forces(name, cases)
     larger, _ = forces(
         name,
@@ -118,8 +121,8 @@ def test_a_longer_cable_of_the_same_proportions_pulls_in_proportion(name, cables
 
 
 @pytest.mark.parametrize("name", LAWS)
-def test_batch_is_the_loop(name, cables, kind):
-    cases = cables(kind, 40, seed=5)
+def test_batch_is_the_loop(name, cables, cable_kind):
+    cases = cables(cable_kind, 40, seed=5)
     ship, anchor = forces(name, cases)
     for i in range(40):
         single = SINGLE[name](*(argument[i] for argument in cases.arguments))
@@ -150,7 +153,7 @@ def test_a_cable_without_weight_and_wind_pulls_only_when_taut(name):
     np.testing.assert_allclose(taut.ship, -STIFFNESS * strain * chord, atol=1e-8)
 
 
-# ------------------------------------------------------------------------------------------------ regimes, continuity
+# ---------------------------------------------------------------------------------------- regimes, continuity
 
 
 def _joint_share(elongation):
@@ -222,15 +225,19 @@ def _tension_and_slope(elongation, elevation, stretch):
 @pytest.mark.parametrize("stretch", [1e-9, 2.25e-4, 0.1])
 @pytest.mark.parametrize("elevation", [0.0, 45.0, -45.0, 80.0])
 def test_elastic_catenary_comes_taut_without_a_corner(stretch, elevation):
-    # Coming taut takes a range of e of about (wL/EA)^(2/3). Across it a corner would show as a step of the slope
-    # that does not shrink with the step of e; a smooth law's halves with it.
+    # Coming taut takes a range of e of about (wL/EA)^(2/3). Across it a corner would show as a step of the
+    # slope that does not shrink with the step of e; a smooth law's halves with it.
     width = stretch ** (2.0 / 3.0)
     largest = []
     for steps in (2000, 4000):
         e = 1.0 + width * np.linspace(-6.0, 6.0, steps + 1)
-        slope = np.asarray(_tension_and_slope(e, np.full_like(e, np.radians(elevation)), np.full_like(e, stretch))[1])
+        slope = np.asarray(
+            _tension_and_slope(e, np.full_like(e, np.radians(elevation)), np.full_like(e, stretch))[1]
+        )
         largest.append(np.abs(np.diff(slope)).max() / slope.max())
-    assert largest[0] < 0.04  # of the whole change of slope, from that of the slack cable to EA; 0.029 at 80 degrees
+    assert (
+        largest[0] < 0.04
+    )  # of the whole change of slope, from that of the slack cable to EA; 0.029 at 80 degrees
     assert largest[1] == pytest.approx(largest[0] / 2, rel=0.02)  # terms of second order in the step
 
 
@@ -248,11 +255,11 @@ def test_elastic_catenary_has_one_slope_on_both_sides_of_one(stretch):
     assert gaps[1] < 0.2 * gaps[0]  # proportional to h
 
 
-# ------------------------------------------------------------------------------------------------------------ equations
+# -------------------------------------------------------------------------------------------------- equations
 
 
 def _classical_end(cases, anchor):
-    """Return where the extensible catenary ends that pulls its anchor by `anchor` (Irvine 1981, section 1.3)."""
+    """Return where the extensible catenary ends that pulls its anchor by `anchor` (Irvine, section 1.3)."""
     exact = np.longdouble
     load, pull = cases.full_load.astype(exact), anchor.astype(exact)
     length, stiffness = cases.length.astype(exact), cases.stiffness.astype(exact)
@@ -264,7 +271,8 @@ def _classical_end(cases, anchor):
     v = v_0 + w * length
     p, q = v / h, v_0 / h
     t, t_0 = np.hypot(h, v), np.hypot(h, v_0)
-    # asinh p - asinh q; where both have one sign by the addition theorem, so that nothing cancels in a taut cable
+    # asinh p - asinh q; where both have one sign by the addition theorem, so that nothing cancels in a taut
+    # cable
     same = (w * length / h) * (p + q) / (p * np.hypot(1, q) + q * np.hypot(1, p))
     bracket = np.where(p * q > 0, np.arcsinh(same), np.arcsinh(p) - np.arcsinh(q))
     across = h * length / stiffness + h / w * bracket
@@ -272,11 +280,12 @@ def _classical_end(cases, anchor):
     return (across / h)[:, None] * level + along[:, None] * upward
 
 
-def test_elastic_forces_satisfy_the_classical_pair(cables, kind):
-    cases = cables(kind, 20_000, seed=8)
+def test_elastic_forces_satisfy_the_classical_pair(cables, cable_kind):
+    cases = cables(cable_kind, 20_000, seed=8)
     _, anchor = forces("elastic_catenary", cases)
     gap = norm((_classical_end(cases, anchor) - cases.span).astype(float)) / cases.length
-    # of the length: rounding of the forces, 1e-16 of a strain of 0.1 and of a shape of 1, times a decade or two
+    # of the length: rounding of the forces, 1e-16 of a strain of 0.1 and of a shape of 1, times a decade or
+    # two
     assert gap.max() < 1e-13
 
 
@@ -294,9 +303,7 @@ def _just_hanging_straight(across, along, stretch):
 
 
 @SETTINGS
-@given(
-    st.floats(-12.0, 1.0), st.floats(-1.5, 1.5), st.one_of(st.just(-np.inf), st.floats(-16.0, 0.0))
-)
+@given(st.floats(-12.0, 1.0), st.floats(-1.5, 1.5), st.one_of(st.just(-np.inf), st.floats(-16.0, 0.0)))
 def test_root_satisfies_its_equation(log_across, along, log_stretch):
     across, stretch = 10.0 ** (2.0 * log_across), 10.0**log_stretch
     if stretch == 0.0:

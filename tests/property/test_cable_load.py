@@ -1,8 +1,8 @@
 """The load on a cable: weight and wind, by the cross-flow principle and by the paper's Eqs. 14-18.
 
-Truth: the paper's form, with its angle, drag and lift, written out here; Hoerner's limits of flow across and along; and
-that air drag takes energy. If this fails, the cable of a ship in wind sags the wrong way, or the linear model is NaN
-when the wind blows along the cable or not at all.
+Truth: the paper's form, with its angle, drag and lift, written out here; Hoerner's limits of flow across and
+along; and that air drag takes energy. If this fails, the cable of a ship in wind sags the wrong way, or the
+linear model is NaN when the wind blows along the cable or not at all.
 """
 
 import jax
@@ -55,19 +55,25 @@ def _riboldi(density, velocity, span):
 def test_equals_the_papers_drag_and_lift():
     density, velocity, span = _random(31)
     found, expected = batch(density, velocity, span), _riboldi(density, velocity, span)
-    # rounding; the paper's k divides by sin(alpha), which multiplies it by up to 1/sin, some 100 in 5 000 draws
+    # rounding; the paper's k divides by sin(alpha), which multiplies it by up to 1/sin, some 100 in 5 000
+    # draws
     np.testing.assert_array_less(norm(found - expected), 1e-13 * norm(expected) + 1e-16)
 
 
 def test_without_wind_it_is_the_weight():
     _, _, span = _random(32)
-    np.testing.assert_array_equal(batch(np.full(COUNT, 1.2), np.zeros((COUNT, 3)), span), np.tile(WEIGHT, (COUNT, 1)))
+    np.testing.assert_array_equal(
+        batch(np.full(COUNT, 1.2), np.zeros((COUNT, 3)), span), np.tile(WEIGHT, (COUNT, 1))
+    )
 
 
 @pytest.mark.parametrize(
     ("velocity", "coefficient"),
     [
-        ((0.0, 10.0, 0.0), CROSS + ALONG),  # straight across: Hoerner's cylinder, 1.1 on the diameter, and friction
+        (
+            (0.0, 10.0, 0.0),
+            CROSS + ALONG,
+        ),  # straight across: Hoerner's cylinder, 1.1 on the diameter, and friction
         ((10.0, 0.0, 0.0), ALONG),  # straight along: friction only
         ((-10.0, 0.0, 0.0), ALONG),
     ],
@@ -82,7 +88,9 @@ def test_cross_flow_principle_at_45_degrees():
     # The component across, V sin 45, counts alone: a normal load of half that of flow straight across.
     v = 10.0 * np.sqrt(0.5)
     load = per_length(1.225, jnp.array([v, v, 0.0]), jnp.array([1.0, 0.0, 0.0])) - WEIGHT
-    np.testing.assert_allclose(load, [-0.6125 * ALONG * np.sqrt(0.5), -0.6125 * (CROSS / 2 + ALONG * np.sqrt(0.5)), 0])
+    np.testing.assert_allclose(
+        load, [-0.6125 * ALONG * np.sqrt(0.5), -0.6125 * (CROSS / 2 + ALONG * np.sqrt(0.5)), 0]
+    )
 
 
 def test_air_takes_energy_from_the_cable():
@@ -137,5 +145,7 @@ def test_gradient_equals_central_differences(velocity):
     exact = np.asarray(jax.jacfwd(_per_length, argnums=1)(jnp.asarray(1.2), velocity, SPAN))
     for i in range(3):
         change = jnp.zeros(3).at[i].set(step)
-        difference = (per_length(1.2, velocity + change, SPAN) - per_length(1.2, velocity - change, SPAN)) / (2 * step)
+        difference = (per_length(1.2, velocity + change, SPAN) - per_length(1.2, velocity - change, SPAN)) / (
+            2 * step
+        )
         np.testing.assert_allclose(exact[:, i], difference, atol=1e-7)

@@ -1,8 +1,9 @@
 """Air density against the printed tables of the standard atmosphere.
 
 Truth: ISO 2533:1975, table of density against geopotential altitude (the same figures as the US Standard
-Atmosphere 1976), and hydrostatic balance of the column. If this fails, buoyancy (135 kg of air) and every aerodynamic
-load carry a wrong density, and the slow vertical mode, which density with altitude causes, is wrong.
+Atmosphere 1976), and hydrostatic balance of the column. If this fails, buoyancy (135 kg of air) and every
+aerodynamic load carry a wrong density, and the slow vertical mode, which density with altitude causes, is
+wrong.
 """
 
 import jax
@@ -41,7 +42,9 @@ def test_column_is_in_hydrostatic_balance():
 
     altitudes = jnp.linspace(-500.0, 11000.0, 47)
     weight = -STANDARD_GRAVITY * jax.vmap(STANDARD.density)(altitudes)
-    np.testing.assert_allclose(jax.vmap(jax.grad(pressure))(altitudes), weight, rtol=1e-13)  # exact but for rounding
+    np.testing.assert_allclose(
+        jax.vmap(jax.grad(pressure))(altitudes), weight, rtol=1e-13
+    )  # exact but for rounding
 
 
 def test_ground_altitude_shifts_the_table():

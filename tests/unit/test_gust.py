@@ -1,8 +1,8 @@
 """The "1 - cos" gust of section 4.1 of the paper.
 
-Truth: the pulse's closed form: peak, half value at a quarter, smooth corners, impulse A T/2, and the paper's numbers
-(2 m/s from the west between 20 and 25 s at 6 m/s of wind). If this fails, the disturbance that every docking figure
-answers to is another one, or an integrator meets a kink that it is not told of.
+Truth: the pulse's closed form: peak, half value at a quarter, smooth corners, impulse A T/2, and the paper's
+numbers (2 m/s from the west between 20 and 25 s at 6 m/s of wind). If this fails, the disturbance that every
+docking figure answers to is another one, or an integrator meets a kink that it is not told of.
 """
 
 import jax
@@ -26,7 +26,9 @@ def test_peak_is_in_the_middle_and_is_the_amplitude():
     np.testing.assert_allclose(velocity(START + PERIOD / 2), AMPLITUDE, rtol=1e-15)
     np.testing.assert_allclose(rate(START + PERIOD / 2), np.zeros(3), atol=1e-15)
     times = START + PERIOD * np.linspace(0.0, 1.0, 1001)
-    assert np.linalg.norm(jax.vmap(GUST.velocity)(times), axis=1).max() <= np.linalg.norm(AMPLITUDE) * (1 + 1e-15)
+    assert np.linalg.norm(jax.vmap(GUST.velocity)(times), axis=1).max() <= np.linalg.norm(AMPLITUDE) * (
+        1 + 1e-15
+    )
 
 
 @pytest.mark.parametrize("part", [0.25, 0.75])
@@ -48,7 +50,8 @@ def test_direction_never_changes():
 
 @pytest.mark.parametrize("corner", [START, START + PERIOD])
 def test_once_continuously_differentiable_at_the_corners(corner):
-    # On either side the slope is at most A/2 (2 pi/T)^2 h: it vanishes with h, so value and slope are continuous.
+    # On either side the slope is at most A/2 (2 pi/T)^2 h: it vanishes with h, so value and slope are
+    # continuous.
     for h in (1e-3, 1e-5):
         bound = 0.5 * np.linalg.norm(AMPLITUDE) * (2 * np.pi / PERIOD) ** 2 * h
         for side in (-h, 0.0, h):

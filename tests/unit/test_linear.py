@@ -1,6 +1,7 @@
 """The small symmetric solver against numpy's LU.
 
-Truth: an independent algorithm (LAPACK with pivoting) on the same systems, and the textbook derivative of a solution.
+Truth: an independent algorithm (LAPACK with pivoting) on the same systems, and the textbook derivative of a
+solution.
 If this fails, the accelerations of the ship are wrong whatever the loads are.
 """
 
@@ -35,7 +36,8 @@ def test_equals_numpy(size, decades):
 
 
 def test_solves_a_ship_sized_system():
-    # Masses of 140 kg beside inertias of 3 000 kg m2 and static moments of 60 kg m, as in Table 2 of the paper.
+    # Masses of 140 kg beside inertias of 3 000 kg m2 and static moments of 60 kg m, as in Table 2 of the
+    # paper.
     mass, z_g = 136.8, 0.455
     matrix = np.diag([145.0, 250.0, 250.0, 214.0, 4570.0, 4470.0])
     matrix[0, 4] = matrix[4, 0] = mass * z_g

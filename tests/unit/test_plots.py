@@ -229,6 +229,36 @@ def test_level_ship_points_north_with_its_fins_aft(shape):
     assert fins[:, 0].min() > hull[:, 0].min()
 
 
+def test_nose_up_and_turned_east_the_ship_stands_on_its_tail(shape):
+    rotation = turned(pitch=0.5 * np.pi, yaw=0.5 * np.pi)
+    outlines = ship_outlines(shape, np.array([10.0, 20.0, -30.0]), rotation, FROM_NORTH)
+    hull = max(outlines, key=len)
+    assert hull[:, 1].max() == pytest.approx(30.0 + 6.9702, abs=1e-3)
+    assert hull[:, 0].mean() == pytest.approx(20.0)
+    fins = np.array([outline for outline in outlines if outline is not hull])
+    assert fins[..., 1].max() < 30.0 - 4.0
+    assert fins[..., 0].mean() == pytest.approx(20.0)
+
+
+@pytest.mark.parametrize(
+    ("wind", "arrows"),
+    [
+        ([-6.0, 0.0, 0.0], [None, (-1, 0), (0, -1)]),  # from north
+        ([0.0, 6.0, 0.0], [(-1, 0), None, (1, 0)]),  # from west
+        ([0.0, 0.0, 0.0], [None, None, None]),
+    ],
+)
+def test_wind_arrows_point_where_the_air_goes(flight, wind, arrows):
+    data = flight.data.assign(wind=flight.data["wind"] * 0.0 + xr.DataArray(wind, dims="ground_axis"))
+    figure = plot_docking(ts.Flight(data, flight.outcome))
+    for axes, arrow in zip(figure.axes, arrows, strict=False):
+        found = [text for text in axes.texts if text.get_gid() == "wind"]
+        assert len(found) == (arrow is not None)
+        for text in found:
+            tail = np.array(text.xyann)
+            np.testing.assert_allclose(-tail / np.linalg.norm(tail), arrow, atol=1e-9)
+
+
 def test_fins_have_the_area_and_the_places_of_the_file(shape):
     root_ahead, tip_ahead, tip_aft, root_aft = np.moveaxis(shape.fins, 1, 0)
     area = 0.5 * np.linalg.norm(np.cross(tip_aft - root_ahead, root_aft - tip_ahead), axis=1)
@@ -253,7 +283,9 @@ def test_seen_on_the_nose_the_hull_is_its_largest_circle(shape):
 @pytest.mark.parametrize("yaw", [0.02, 0.3, 0.9, 1.4])
 def test_ellipsoid_is_seen_as_the_ellipse_of_analytic_geometry(vehicle, yaw):
     hull = {key: vehicle["hull"][key] for key in ("length", "diameter")}
-    config = VehicleConfig.model_validate({**vehicle, "hull": {"profile": "ellipsoid", **hull}})
+    volume = {"value": np.pi / 6.0 * 16.0 * 3.98432**2, "unit": "m^3", "source": "geometry"}
+    own = {"hull": {"profile": "ellipsoid", **hull}, "buoyancy": {**vehicle["buoyancy"], "volume": volume}}
+    config = VehicleConfig.model_validate({**vehicle, **own})
     outline = silhouette(ship_shape(config), ORIGIN, turned(yaw=yaw), FROM_NORTH)
     long, short = 8.0, 0.5 * 3.98432
     along = np.hypot(long * np.sin(yaw), short * np.cos(yaw))

@@ -1,8 +1,8 @@
 """Rotations: the ground and body axes mean what the paper's section 2 and Eqs. 6-7 say.
 
 Truth: hand-turned axes, scipy's own rotations, Poisson's rule dR/dt = R skew(omega), and limits at zero.
-If this fails, a sign or a frame is wrong everywhere else: nose-up would be nose-down, or body loads would be summed
-in ground axes; or the gradient of a norm at rest is NaN and no trim point can be linearised.
+If this fails, a sign or a frame is wrong everywhere else: nose-up would be nose-down, or body loads would be
+summed in ground axes; or the gradient of a norm at rest is NaN and no trim point can be linearised.
 """
 
 import jax
@@ -111,7 +111,9 @@ def test_euler_rate_matrix_is_singular_at_the_pole():
 @given(vectors, vectors)
 def test_skew_is_the_cross_product(a, b):
     scale = float(jnp.linalg.norm(a) * jnp.linalg.norm(b))
-    np.testing.assert_allclose(skew(a) @ b, np.cross(a, b), atol=1e-15 * scale)  # two products, one difference
+    np.testing.assert_allclose(
+        skew(a) @ b, np.cross(a, b), atol=1e-15 * scale
+    )  # two products, one difference
     np.testing.assert_array_equal(skew(a), -skew(a).T)
 
 
@@ -131,7 +133,8 @@ def test_safe_norm_has_a_finite_gradient_at_zero():
 @SETTINGS
 @given(angles)
 def test_horizontal_unit_is_the_heading(attitude):
-    # cos(theta) > 0.07 here, so the nose seen from above points along (cos psi, sin psi) whatever roll and pitch.
+    # cos(theta) > 0.07 here, so the nose seen from above points along (cos psi, sin psi) whatever roll and
+    # pitch.
     psi = float(attitude[2])
     np.testing.assert_allclose(horizontal_unit(rotate(attitude)), [np.cos(psi), np.sin(psi)], atol=1e-13)
 

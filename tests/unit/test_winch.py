@@ -1,7 +1,8 @@
 """The winch: default rate plus correction, within its limits.
 
-Truth: the maker's data as the paper prints them (30 m/min, default 0.3 m/s) and the time they imply, 61.67 s for
-18.5 m of cable (claim D11). If this fails, docking times are wrong, or a law can drive the winch past its motor.
+Truth: the maker's data as the paper prints them (30 m/min, default 0.3 m/s) and the time they imply, 61.67 s
+for 18.5 m of cable (claim D11). If this fails, docking times are wrong, or a law can drive the winch past its
+motor.
 """
 
 import jax

@@ -1,8 +1,8 @@
 """Steady wind: uniform, and the power law of IEC 61400-1.
 
 Truth: the law worked by hand (a 1/7 profile gains 2^(1/7) - 1 = 10.41 % per doubling of height) and its slope
-dV/dh = alpha V/h. If this fails, the wind at the ship is not the wind asked for, or the shear has the wrong sign
-because down is positive.
+dV/dh = alpha V/h. If this fails, the wind at the ship is not the wind asked for, or the shear has the wrong
+sign because down is positive.
 """
 
 import jax

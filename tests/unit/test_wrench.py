@@ -1,6 +1,7 @@
 """Wrenches: moments about a point and how they change with it.
 
-Truth: m = q x f by hand, the same load about another point, and power, which no choice of reference point may change.
+Truth: m = q x f by hand, the same load about another point, and power, which no choice of reference point may
+change.
 If this fails, a force at the nose turns the ship the wrong way, or the motion depends on where P is put.
 """
 
@@ -34,7 +35,8 @@ def test_as_vector_is_force_then_moment():
 @SETTINGS
 @given(vectors, vectors, vectors)
 def test_moved_is_the_wrench_of_the_same_force_seen_from_the_new_point(point, force, offset):
-    # `offset` goes from the new reference point to the old one, so the force is at offset + point from the new.
+    # `offset` goes from the new reference point to the old one, so the force is at offset + point from the
+    # new.
     moved, direct = Wrench.at(point, force).moved(offset), Wrench.at(offset + point, force)
     np.testing.assert_allclose(moved.as_vector(), direct.as_vector(), atol=ATOL)
 

@@ -2,9 +2,11 @@
 
 from typing import Annotated, Literal
 
+import jax.numpy as jnp
 import numpy as np
 from pydantic import Field, model_validator
 
+from tethership.physics.hull import gertler_from_shape
 from tethership.scenario.quantity import Matrix, Quantity, Table, Vector
 
 Length = Annotated[float, Quantity("m", positive=True, sourced=True)]
@@ -145,6 +147,28 @@ class ThrusterConfig(Table):
         return self
 
 
+def _profile(hull: GertlerHull | GertlerShapeHull | EllipsoidHull) -> np.ndarray:
+    """Return a₁ … a₆ of a hull's profile [-]."""
+    if isinstance(hull, GertlerHull):
+        return np.array(hull.coefficients)
+    if isinstance(hull, EllipsoidHull):
+        return np.array([1.0, -1.0, 0.0, 0.0, 0.0, 0.0])
+    shape = gertler_from_shape(
+        *(
+            jnp.asarray(number)
+            for number in (
+                hull.length,
+                hull.diameter,
+                hull.largest_section,
+                hull.nose_radius,
+                hull.tail_radius,
+                hull.prismatic_coefficient,
+            )
+        )
+    )
+    return np.asarray(shape.coefficients)
+
+
 class VehicleConfig(Table):
     """An airship."""
 
@@ -159,7 +183,24 @@ class VehicleConfig(Table):
     thrusters: tuple[ThrusterConfig, ...] = ()
 
     @model_validator(mode="after")
-    def _hull_fits(self) -> "VehicleConfig":
+    def _hull_is_one(self) -> "VehicleConfig":
+        coefficients = _profile(self.hull)
+        station = np.linspace(0.0, 1.0, 401)
+        squared = (coefficients * station[:, None] ** np.arange(1, 7)).sum(axis=1)
+        if squared[1:-1].min() <= 0:
+            at = float(station[1 + int(np.argmin(squared[1:-1]))] * self.hull.length)
+            raise ValueError(f"hull: the profile goes negative (r² ≤ 0) at {at:.2f} m from the nose; check coefficients")
+        if abs(squared[-1]) > 1e-3:
+            raise ValueError(f"hull: (r/D)² is {squared[-1]:.4g} at the tail; the coefficients must add up to 0")
+        volume = np.pi * self.hull.diameter**2 * self.hull.length * (coefficients / np.arange(2, 8)).sum()
+        if abs(volume / self.buoyancy.volume - 1.0) > 0.1:
+            raise ValueError(
+                f"buoyancy.volume {self.buoyancy.volume:.4g} m³ is more than 10 % from the hull's own {volume:.4g} m³"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _parts_fit(self) -> "VehicleConfig":
         if self.envelope.potential_length > self.hull.length:
             raise ValueError(
                 f"envelope.potential_length {self.envelope.potential_length:g} m is beyond the hull's length "

@@ -88,7 +88,7 @@ def _title(figure: Figure, snapshots: Snapshots) -> None:
     wind = config.wind
     layers = ", ".join(attributes["layers"]) or "none"
     parts = [
-        f"wind {wind.speed:.3g} m/s from {compass(wind.from_direction)}",
+        f"wind {wind.speed:.3g} m/s from {compass(wind.from_direction)}" if wind.speed > 0 else "no wind",
         *_gusts(config.gusts),
         f"layers: {layers}" + ("" if attributes["sas"] else " (no SAS)"),
         f"{attributes['formulation']} formulation",
