@@ -475,4 +475,5 @@ def test_flight_about_another_reference_point_is_the_same_flight(docking, moved,
     # Runge–Kutta is not the same in both sets of states: (0.005 · 4)⁴/12 on a taut cable's 4 rad/s. Measured 4e-10.
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-8)
     np.testing.assert_allclose(here[:, 3:9], there[:, 3:9], atol=1e-8)
-    assert np.linalg.norm(here[:, 9:] + np.asarray(turned_all(here))[:, :, 0] * 6.97, axis=1).max() > 20.0  # taut
+    reach = np.linalg.norm(here[:, 9:] + 6.97 * np.asarray(turned_all(here))[:, :, 0], axis=1).max()
+    assert reach > 19.9  # m of a 20 m cable: drawn up, beyond the published law's joint at 19.8 m
