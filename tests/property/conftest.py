@@ -13,8 +13,8 @@ KINDS = ("slack", "near_taut", "taut", "near_plumb", "near_coincident")
 class CableCases(NamedTuple):
     """A batch of cables; the arrays of a batch have the same first axis.
 
-    `across` and `along` are the distances of the ends across and against the load over L, a and b; `stretch` is
-    wL/EA. `load` is short of the laws' LOAD_FLOOR, so that the load that they compute with is `full_load`.
+    `across` and `along` are the distances of the ends across and against the load over L, a and b; `stretch`
+    is wL/EA. `load` is short of the laws' LOAD_FLOOR: the load that they compute with is `full_load`.
     """
 
     stiffness: np.ndarray

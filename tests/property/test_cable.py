@@ -54,13 +54,13 @@ def forces(name, cases):
 
 
 def rounding(cases, ship):
-    """Return the change of force [N] by which a relative error of 1e-14 in geometry or arithmetic shows.
+    """Return the change of force [N] by which a relative error of 3e-14 in geometry or arithmetic shows.
 
-    Up to a hundred roundings of 1.1e-16. A cable that comes taut multiplies errors of position by EA/L, so that
-    EA counts there beside weight and force.
+    Some three hundred roundings of 1.1e-16. A cable that comes taut multiplies errors of position by EA/L, so
+    that EA counts there beside weight and force.
     """
     amplified = cases.stiffness * (cases.elongation > 0.9)
-    return 1e-14 * (cases.weight * cases.length + norm(ship) + amplified)
+    return 3e-14 * (cases.weight * cases.length + norm(ship) + amplified)
 
 
 # ----------------------------------------------------------------------------------------- balance and frames

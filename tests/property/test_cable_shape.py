@@ -85,7 +85,7 @@ def test_curve_starts_at_the_anchor_and_ends_at_the_ship(name, cables, cable_kin
             1e-9,
             marks=pytest.mark.xfail(
                 strict=True,
-                reason="points() takes artanh of a number that rounds to 1: 6e-9 L off where |d_perp| = 4e-7 L",
+                reason="points() takes artanh of a number that rounds to 1: 6e-9 L off at |d_perp| = 4e-7 L",
             ),
         ),
     ],

@@ -92,7 +92,9 @@ turned_all = jax.jit(jax.vmap(lambda vector: rotation_matrix(vector[6:9])))
 @pytest.fixture(scope="module")
 def free():
     """Return a free ship in still air, by formulation: everything on, ISA density, thrust, fins, drag."""
-    return {form: with_wind(ts.load_scenario("hover", {"formulation": form}).system, np.zeros(3)) for form in BOTH}
+    return {
+        form: with_wind(ts.load_scenario("hover", {"formulation": form}).system, np.zeros(3)) for form in BOTH
+    }
 
 
 THROTTLE = np.array([0.3, -0.1, 0.15, 0.2, 0.35, 0.25])
@@ -155,7 +157,9 @@ def drifting(free):
         still = np.asarray(flights(plant, starts, THROTTLE, DEFLECTION, NO_CABLE, step, count))
         moving = starts.copy()
         moving[:, :3] += np.array([turned(start).T @ wind for start in starts])
-        path = np.asarray(flights(with_wind(plant, wind), moving, THROTTLE, DEFLECTION, NO_CABLE, step, count))
+        path = np.asarray(
+            flights(with_wind(plant, wind), moving, THROTTLE, DEFLECTION, NO_CABLE, step, count)
+        )
         assert np.abs(still[..., 7]).max() < 1.3  # Euler angles are good all the way
         assert np.isfinite(path).all()
         rotation = np.asarray(turned_all(path.reshape(-1, 12))).reshape(*path.shape[:2], 3, 3)
@@ -264,7 +268,11 @@ def drained(ideal):
     for form, plant in ideal.items():
         path = np.asarray(tumbling(plant, starts, 0.01, 1000))
         assert np.isfinite(path).all()
-        motion, rotation, position = path[..., :6], path[..., 6:15].reshape(*path.shape[:2], 3, 3), path[..., 15:]
+        motion, rotation, position = (
+            path[..., :6],
+            path[..., 6:15].reshape(*path.shape[:2], 3, 3),
+            path[..., 15:],
+        )
         impulse = motion @ np.asarray(total_mass(plant))
         energy = 0.5 * np.sum(motion * impulse, axis=-1)
         linear = np.einsum("abij,abj->abi", rotation, impulse[..., :3])
@@ -450,9 +458,7 @@ def test_reference_point_does_not_matter(docking, moved, form, point, throttle, 
     plant, vector, point = docking[form].system, tethered_state(**place), np.array(point)
     other = moved[form, tuple(point)]
     here = np.asarray(rate_of(plant, GUST_TIME, vector, throttle, 0.3 * deflection, LENGTHS))
-    there = np.asarray(
-        rate_of(other, GUST_TIME, carried(vector, point), throttle, 0.3 * deflection, LENGTHS)
-    )
+    there = np.asarray(rate_of(other, GUST_TIME, carried(vector, point), throttle, 0.3 * deflection, LENGTHS))
     expected = here.copy()
     expected[:3] += np.cross(here[3:6], point)
     expected[9:] += turned(vector) @ np.cross(vector[3:6], point)
@@ -471,7 +477,9 @@ def test_flight_about_another_reference_point_is_the_same_flight(docking, moved,
     there = np.asarray(
         flights(other, carried(start, point)[None], THROTTLE, DEFLECTION, LENGTHS, step, count)
     )[0]
-    ends = [path[:, 9:] + np.asarray(turned_all(path)) @ arm for path, arm in ((here, point), (there, 0 * point))]
+    ends = [
+        path[:, 9:] + np.asarray(turned_all(path)) @ arm for path, arm in ((here, point), (there, 0 * point))
+    ]
     # Runge–Kutta is not the same in both sets of states: (0.005 · 4)⁴/12 on a taut cable's 4 rad/s. Measured 4e-10.
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-8)
     np.testing.assert_allclose(here[:, 3:9], there[:, 3:9], atol=1e-8)

@@ -59,9 +59,7 @@ def test_matrix_carries_the_energy_to_any_reference_point(centre, motion):
 
 def test_matrix_at_b_is_diagonal_and_about_the_axis_nothing_turns():
     matrix = np.asarray(apparent().matrix())
-    np.testing.assert_array_equal(
-        matrix, np.diag(np.concatenate([VOLUME * FACTORS, VOLUME * ROTATIONAL]))
-    )
+    np.testing.assert_array_equal(matrix, np.diag(np.concatenate([VOLUME * FACTORS, VOLUME * ROTATIONAL])))
     assert matrix[3, 3] == 0.0
     assert np.linalg.eigvalsh(np.asarray(apparent(centre=(2.0, -1.0, 0.5)).matrix())).min() > -1e-9
 
@@ -113,7 +111,9 @@ def test_munk_moment_turns_the_nose_away_from_the_flow():
     wrench = apparent().wrench(jnp.asarray(DENSITY), jnp.array([u, v, w]), NONE, NONE, NONE, NONE)
     munk = (0.86 - 0.08) * DENSITY * VOLUME
     # Moments of 1e3 N m, two products each; d'Alembert: no force.
-    np.testing.assert_allclose(np.asarray(wrench.moment), [0.0, munk * u * w, -munk * u * v], rtol=0, atol=1e-11)
+    np.testing.assert_allclose(
+        np.asarray(wrench.moment), [0.0, munk * u * w, -munk * u * v], rtol=0, atol=1e-11
+    )
     np.testing.assert_array_equal(np.asarray(wrench.force), np.zeros(3))
 
 

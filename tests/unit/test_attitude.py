@@ -77,7 +77,7 @@ def test_rates_are_opposed_by_the_moment_about_their_own_axis(law, axis, sign):
 
 
 def test_pitch_is_shared_equally_by_the_tail_and_the_pair_ahead(law):
-    """"Two equal contributions": #2 alone, and #3 with #4, give the same moment. The printed sign cancels it."""
+    """#2 alone, and #3 with #4, are the text's "two equal contributions"; the printed sign cancels them."""
     throttle = np.asarray(throttle_of(law, np.array([0.0, 0.2, 0.0]), np.zeros(3)))
     moments = throttle * ARMS[:, 1]
     assert moments[1] == pytest.approx(moments[2] + moments[3], rel=1e-14)  # 2.2675 · 2 · 2 = 9.07 exactly

@@ -141,7 +141,9 @@ def test_cross_flow_drag_is_the_sum_of_the_strips(envelope):
     worst = 0.0
     for i in range(CASES):
         expected = cross_flow(velocities[i], rates[i], CUT)
-        expected[0] = -0.5 * DENSITY * VOLUME ** (2 / 3) * AXIAL_DRAG * abs(velocities[i, 0]) * velocities[i, 0]
+        expected[0] = (
+            -0.5 * DENSITY * VOLUME ** (2 / 3) * AXIAL_DRAG * abs(velocities[i, 0]) * velocities[i, 0]
+        )
         scale = np.abs(expected[3:]).max() / 4.0 + np.abs(expected[1:3]).max()
         worst = max(worst, np.abs((found[i] - expected)[[0, 1, 2]]).max() / scale)
         worst = max(worst, np.abs((found[i] - expected)[[3, 4, 5]]).max() / (4.0 * scale))

@@ -53,7 +53,11 @@ def test_one_fin_by_hand():
     """A starboard fin (n = +b₃) at 10 m/s ahead and 1 m/s of air from below."""
     found = wrench_of(fins_at([0.0]), [10.0, 0.0, 1.0])
     q = 0.5 * 1.2
-    attached, separated, friction = q * 2.88 * 5.73 * 0.40 * 10.0 * 1.0, q * 2.88 * 1.0, q * 2.88 * 0.006 * 100.0
+    attached, separated, friction = (
+        q * 2.88 * 5.73 * 0.40 * 10.0 * 1.0,
+        q * 2.88 * 1.0,
+        q * 2.88 * 0.006 * 100.0,
+    )
     # Numbers of the vehicle file: 39.6 N, 1.73 N, 1.04 N, all against the motion.
     np.testing.assert_allclose([attached, separated, friction], [39.606, 1.728, 1.0368], rtol=1e-4)
     expected = np.zeros(6)
@@ -138,7 +142,7 @@ def test_deflection_adds_to_incidence(speed, slip, angle):
 
 
 def test_positive_deflection_of_the_starboard_fin_pitches_the_nose_down():
-    """n = +b₃: positive δ lifts the tail, flying ahead; and pushes it down flying astern (v_x² sign rule)."""
+    """Its normal is +b₃: positive δ lifts the tail flying ahead, and pushes it down flying astern."""
     fin = fins_at([0.0], friction=0.0)
     ahead = wrench_of(fin, [10.0, 0.0, 0.0], deflection=[0.1])
     expected = -0.5 * DENSITY * AREA * SLOPE * EFFICIENCY * 100.0 * 0.1

@@ -138,7 +138,7 @@ def test_own_laws_join_the_layers_and_keep_their_memory_apart(scenario, measurem
 def test_memory_that_is_forgotten_is_an_error(scenario, measurement):
     """A memory for two laws handed to three is a programming error, not silence."""
     law = scenario.law(layers=("heading",)).joined({"clock": Clock()})
-    with pytest.raises(ValueError, match="shorter|longer|argument 2"):
+    with pytest.raises(ValueError, match=r"shorter|longer|argument 2"):
         law(jnp.zeros(()), measurement, ((), ()))
 
 

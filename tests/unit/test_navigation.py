@@ -47,7 +47,12 @@ def throttle_of(law, offset, attitude, speed, climb):
 
 
 def commanded(law, offset, attitude=(0.0, 0.0, 0.0), speed=0.0, climb=0.0):
-    values = np.asarray(offset, dtype=float), np.asarray(attitude, dtype=float), np.asarray(speed), np.asarray(climb)
+    values = (
+        np.asarray(offset, dtype=float),
+        np.asarray(attitude, dtype=float),
+        np.asarray(speed),
+        np.asarray(climb),
+    )
     return np.asarray(throttle_of(law, *values))
 
 

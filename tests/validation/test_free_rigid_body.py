@@ -90,15 +90,16 @@ def tumbled(plant, velocity, rates, times):
 
 
 def test_symmetric_top_precesses_in_closed_form(vacuum):
-    """Steady precession about the vertical: θ constant, ψ̇ = H/I_t, φ̇ = p(1 − I_a/I_t) with the spin p = −(H/I_a) sin θ."""
+    """Steady precession about the vertical, H along the down axis.
+
+    θ is constant, ψ̇ = H/I_t, φ̇ = p(1 − I_a/I_t) with the spin p = −(H/I_a) sin θ.
+    """
     axial, transverse, height = 200.0, 3000.0, 0.6
     top = with_body(vacuum, 140.0, [0.0, 0.0, 0.0], np.diag([axial, transverse, transverse]))
     momentum = 900.0  # H along the down axis [N m s]
     roll, heading = 0.4, -1.0
     # H in body axes is Rᵀ(0, 0, H): −sin θ, sin φ cos θ, cos φ cos θ.
-    direction = np.array(
-        [-np.sin(height), np.sin(roll) * np.cos(height), np.cos(roll) * np.cos(height)]
-    )
+    direction = np.array([-np.sin(height), np.sin(roll) * np.cos(height), np.cos(roll) * np.cos(height)])
     rates = momentum * direction / np.array([axial, transverse, transverse])
     start = np.concatenate([np.zeros(3), rates, [roll, height, heading], np.zeros(3)])
     times = np.linspace(0.0, 40.0, 81)
@@ -165,8 +166,12 @@ def test_flip_period(flipping):
     second = np.asarray(path[1])[:, 1]
     upward = np.flatnonzero((second[:-1] < 0) & (second[1:] >= 0))
     # Cubic interpolation of a passage sampled every 0.05 s: error (0.05/0.5)⁴ of the step.
-    crossings = [np.roots(np.polyfit(times[i - 1 : i + 3] - times[i], second[i - 1 : i + 3], 3)) for i in upward]
-    passages = times[upward] + [min(r.real for r in c if abs(r.imag) < 1e-9 and -1e-6 < r.real < 0.0501) for c in crossings]
+    crossings = [
+        np.roots(np.polyfit(times[i - 1 : i + 3] - times[i], second[i - 1 : i + 3], 3)) for i in upward
+    ]
+    passages = times[upward] + [
+        min(r.real for r in c if abs(r.imag) < 1e-9 and -1e-6 < r.real < 0.0501) for c in crossings
+    ]
     assert len(passages) >= 2
     np.testing.assert_allclose(np.diff([0.0, *passages]), period, rtol=1e-5)
 
@@ -191,7 +196,9 @@ def test_lotte_in_a_vacuum_tumbles_about_its_centre_of_gravity(vacuum):
     principal = np.array([0.05, 0.0, 0.3])
     rates, velocity = axes @ principal, np.array([1.0, -0.5, 0.3])
     times = np.linspace(0.0, 60.0, 121)
-    v, w, rotation, position = map(np.asarray, tumbled(vacuum, jnp.asarray(velocity), jnp.asarray(rates), times))
+    v, w, rotation, position = map(
+        np.asarray, tumbled(vacuum, jnp.asarray(velocity), jnp.asarray(rates), times)
+    )
     expected, _ = elliptic_rates(moments, principal, times)
     np.testing.assert_allclose(w @ axes, expected, atol=1e-9)  # rates of 0.3 rad/s, 1e-11 per step
     assert np.ptp(expected[:, 1]) > 0.02  # the motion is not a mere steady spin

@@ -1,8 +1,9 @@
 """Lamb's inertia factors of a prolate spheroid, held against Lamb's own integrals and the printed table.
 
 Sources: H. Lamb, *Hydrodynamics*, 6th ed. (1932), art. 114–115 (the integrals); H. Lamb, *The inertia-coefficients
-of an ellipsoid moving in fluid*, R&M 623 (1918) (the table, copied by Munk in NACA TR-184); Table 2 of Riboldi et al. If this failed, every user who asks for `model = "lamb"`
-would get a wrong apparent mass, and the reading of the paper's Table 2 (factors, not densities) would be baseless.
+of an ellipsoid moving in fluid*, R&M 623 (1918) (the table, copied by Munk in NACA TR-184); Table 2 of Riboldi et al.
+If this failed, every user who asks for `model = "lamb"` would get a wrong apparent mass, and the reading of the
+paper's Table 2 (factors, not densities) would be baseless.
 """
 
 import jax
@@ -75,7 +76,8 @@ def test_paper_table_2():
     np.testing.assert_allclose(factors(4.02)[:2], [0.08, 0.86], atol=5e-3)
     assert factors(4.87)[2] == pytest.approx(0.69, abs=5e-4)
     # The squared radius of gyration of the full ellipsoid: 13.6 m² in Table 2.
-    assert (16.0**2 + 3.98**2) / 20.0 == pytest.approx(13.6, abs=0.05)
+    gyration = (16.0**2 + 3.98**2) / 20.0
+    assert gyration == pytest.approx(13.6, abs=0.05)
 
 
 def test_sphere_limit():
@@ -100,7 +102,9 @@ def test_factors_change_smoothly_with_fineness():
         step = 1e-5
         difference = (factors(fineness + step) - factors(fineness - step)) / (2 * step)
         found = [float(exact.axial), float(exact.lateral), float(exact.rotational)]
-        np.testing.assert_allclose(found, difference, rtol=1e-6, atol=1e-9)  # step²f‴/6 and rounding 1e-15/1e-5
+        np.testing.assert_allclose(
+            found, difference, rtol=1e-6, atol=1e-9
+        )  # step²f‴/6 and rounding 1e-15/1e-5
 
 
 def test_scenario_offers_lamb_instead_of_the_table():

@@ -4,6 +4,7 @@ A flight is flown in segments of a fixed number of samples, so that one compiled
 length, progress can be shown and an interrupted flight keeps what was flown.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import diffrax
@@ -124,6 +125,34 @@ def _controller(stepping: Stepping, corners: Float[Array, "n"]) -> diffrax.Abstr
     return diffrax.ClipStepSizeController(controller, jump_ts=corners)
 
 
+Field = Callable[[Float[Array, ""], Float[Array, "n"]], Array]
+"""A function of time and the integrator's vector."""
+
+
+def _traced(loop: ClosedLoop, stop: StopConditions, time: Array, vector: Array) -> tuple[Field, Field]:
+    """Return vector field and least margin, traced once (the integrator would trace them at every use).
+
+    Notes
+    -----
+    Each stands in a branch of its own: XLA's CPU runtime runs a sequence of kernels on small arrays one after the
+    other without scheduling, but only where no larger array (the integrator's stages) belongs to the sequence. It
+    makes a step a quarter cheaper.
+    """
+
+    def apart(function: Field) -> Field:
+        traced = eqx.filter_closure_convert(function, time, vector)
+
+        def call(t: Array, y: Array) -> Array:
+            shape = jax.eval_shape(traced, t, y)
+            return jax.lax.cond(
+                jnp.isfinite(t), lambda: traced(t, y), lambda: jnp.full(shape.shape, jnp.nan, shape.dtype)
+            )
+
+        return call
+
+    return apart(loop.vector_field), apart(lambda t, y: stop.least(loop, t, y))
+
+
 @eqx.filter_jit
 def fly_segment(
     loop: ClosedLoop,
@@ -151,11 +180,9 @@ def fly_segment(
     sample_times : Float[Array, "samples"]
         When to sample [s].
     """
-    # Traced once here; the integrator would trace them anew at every use.
-    field = eqx.filter_closure_convert(lambda t, y, _: loop.vector_field(t, y), start, vector, None)
-    margin = eqx.filter_closure_convert(lambda t, y: stop.least(loop, t, y), start, vector)
+    field, margin = _traced(loop, stop, start, vector)
     solution = diffrax.diffeqsolve(
-        diffrax.ODETerm(field),
+        diffrax.ODETerm(lambda t, y, _: field(t, y)),
         METHODS[stepping.method](),
         start,
         end,
