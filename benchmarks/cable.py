@@ -72,9 +72,11 @@ def moorpy_rate(span: np.ndarray, count: int = 2000) -> tuple[float, int, float]
     picked = span[:, :: span.shape[1] // count][:, :count]
     law = jax.jit(
         jax.vmap(
-            lambda d: ts.physics.cable.ElasticCatenary(jnp.asarray(stiffness))
-            .force(d, jnp.asarray(LENGTH), jnp.array([0.0, 0.0, weight]))
-            .ship,
+            lambda d: (
+                ts.physics.cable.ElasticCatenary(jnp.asarray(stiffness))
+                .force(d, jnp.asarray(LENGTH), jnp.array([0.0, 0.0, weight]))
+                .ship
+            ),
             in_axes=-1,
             out_axes=-1,
         )
@@ -85,9 +87,7 @@ def moorpy_rate(span: np.ndarray, count: int = 2000) -> tuple[float, int, float]
     found = []
     for north, east, down in picked.T:
         try:
-            found.append(
-                moorpy.Catenary.catenary(np.hypot(north, east), -down, LENGTH, stiffness, weight, CB=-1e9)
-            )
+            found.append(moorpy.Catenary.catenary(np.hypot(north, east), -down, LENGTH, stiffness, weight, CB=-1e9))
         except Exception:
             found.append(None)
     spent = time.perf_counter() - start

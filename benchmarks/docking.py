@@ -57,9 +57,7 @@ def lsoda(scenario: ts.Scenario, point: ts.TrimPoint, layers: list[str], end: fl
     call(0.0, start)
     spent, _ = best_of(
         1,
-        lambda: scipy.integrate.solve_ivp(
-            call, (0.0, end), start, method="LSODA", rtol=1e-6, atol=1e-6, max_step=0.25
-        ),
+        lambda: scipy.integrate.solve_ivp(call, (0.0, end), start, method="LSODA", rtol=1e-6, atol=1e-6, max_step=0.25),
     )
     return spent
 

@@ -62,9 +62,7 @@ def test_equals_the_papers_drag_and_lift():
 
 def test_without_wind_it_is_the_weight():
     _, _, span = _random(32)
-    np.testing.assert_array_equal(
-        batch(np.full(COUNT, 1.2), np.zeros((COUNT, 3)), span), np.tile(WEIGHT, (COUNT, 1))
-    )
+    np.testing.assert_array_equal(batch(np.full(COUNT, 1.2), np.zeros((COUNT, 3)), span), np.tile(WEIGHT, (COUNT, 1)))
 
 
 @pytest.mark.parametrize(
@@ -88,9 +86,7 @@ def test_cross_flow_principle_at_45_degrees():
     # The component across, V sin 45, counts alone: a normal load of half that of flow straight across.
     v = 10.0 * np.sqrt(0.5)
     load = per_length(1.225, jnp.array([v, v, 0.0]), jnp.array([1.0, 0.0, 0.0])) - WEIGHT
-    np.testing.assert_allclose(
-        load, [-0.6125 * ALONG * np.sqrt(0.5), -0.6125 * (CROSS / 2 + ALONG * np.sqrt(0.5)), 0]
-    )
+    np.testing.assert_allclose(load, [-0.6125 * ALONG * np.sqrt(0.5), -0.6125 * (CROSS / 2 + ALONG * np.sqrt(0.5)), 0])
 
 
 def test_air_takes_energy_from_the_cable():
@@ -101,9 +97,7 @@ def test_air_takes_energy_from_the_cable():
 
 def test_which_end_is_called_the_anchor_does_not_matter():
     density, velocity, span = _random(34)
-    np.testing.assert_allclose(
-        batch(density, velocity, span), batch(density, velocity, -span), rtol=1e-15, atol=1e-18
-    )
+    np.testing.assert_allclose(batch(density, velocity, span), batch(density, velocity, -span), rtol=1e-15, atol=1e-18)
 
 
 def test_load_does_not_depend_on_the_distance_of_the_ends():
@@ -145,7 +139,5 @@ def test_gradient_equals_central_differences(velocity):
     exact = np.asarray(jax.jacfwd(_per_length, argnums=1)(jnp.asarray(1.2), velocity, SPAN))
     for i in range(3):
         change = jnp.zeros(3).at[i].set(step)
-        difference = (per_length(1.2, velocity + change, SPAN) - per_length(1.2, velocity - change, SPAN)) / (
-            2 * step
-        )
+        difference = (per_length(1.2, velocity + change, SPAN) - per_length(1.2, velocity - change, SPAN)) / (2 * step)
         np.testing.assert_allclose(exact[:, i], difference, atol=1e-7)

@@ -92,9 +92,7 @@ turned_all = jax.jit(jax.vmap(lambda vector: rotation_matrix(vector[6:9])))
 @pytest.fixture(scope="module")
 def free():
     """Return a free ship in still air, by formulation: everything on, ISA density, thrust, fins, drag."""
-    return {
-        form: with_wind(ts.load_scenario("hover", {"formulation": form}).system, np.zeros(3)) for form in BOTH
-    }
+    return {form: with_wind(ts.load_scenario("hover", {"formulation": form}).system, np.zeros(3)) for form in BOTH}
 
 
 THROTTLE = np.array([0.3, -0.1, 0.15, 0.2, 0.35, 0.25])
@@ -132,9 +130,7 @@ def test_published_misses_it_by_one_term(free, unit, wind):
     total = np.asarray(mass_matrix(State.from_vector(jnp.asarray(vector)), plant.ship, plant.environment))
     density = float(plant.environment.density_at(jnp.asarray(vector[9:])))  # B = P
     apparent = density * np.asarray(plant.ship.apparent_mass.matrix())
-    np.testing.assert_allclose(
-        found[:6] - still[:6], np.linalg.solve(total, apparent @ spurious), rtol=0, atol=1e-10
-    )
+    np.testing.assert_allclose(found[:6] - still[:6], np.linalg.solve(total, apparent @ spurious), rtol=0, atol=1e-10)
     np.testing.assert_allclose(found[6:], still[6:], rtol=0, atol=1e-12)
 
 
@@ -157,9 +153,7 @@ def drifting(free):
         still = np.asarray(flights(plant, starts, THROTTLE, DEFLECTION, NO_CABLE, step, count))
         moving = starts.copy()
         moving[:, :3] += np.array([turned(start).T @ wind for start in starts])
-        path = np.asarray(
-            flights(with_wind(plant, wind), moving, THROTTLE, DEFLECTION, NO_CABLE, step, count)
-        )
+        path = np.asarray(flights(with_wind(plant, wind), moving, THROTTLE, DEFLECTION, NO_CABLE, step, count))
         assert np.abs(still[..., 7]).max() < 1.3  # Euler angles are good all the way
         assert np.isfinite(path).all()
         rotation = np.asarray(turned_all(path.reshape(-1, 12))).reshape(*path.shape[:2], 3, 3)
@@ -383,9 +377,7 @@ MIRROR = np.array([1, -1, 1, -1, 1, -1, -1, 1, -1, 1, -1, 1.0])
 def tethered_state(unit, elongation, bearing, elevation):
     """Return a state whose tether point is `elongation` times 20 m from the anchor."""
     vector = RATE_SCALES * unit
-    direction = np.array(
-        [np.cos(elevation) * np.cos(bearing), np.cos(elevation) * np.sin(bearing), -np.sin(elevation)]
-    )
+    direction = np.array([np.cos(elevation) * np.cos(bearing), np.cos(elevation) * np.sin(bearing), -np.sin(elevation)])
     vector[9:] = 20.0 * elongation * direction - turned(vector) @ np.array([6.97, 0.0, 0.0])
     return vector
 
@@ -474,12 +466,8 @@ def test_flight_about_another_reference_point_is_the_same_flight(docking, moved,
     late = eqx.tree_at(lambda p: p.environment.gusts[0].start, docking[form].system, jnp.asarray(-1.0))
     other = eqx.tree_at(lambda p: p.environment.gusts[0].start, moved[form, tuple(point)], jnp.asarray(-1.0))
     here = np.asarray(flights(late, start[None], THROTTLE, DEFLECTION, LENGTHS, step, count))[0]
-    there = np.asarray(
-        flights(other, carried(start, point)[None], THROTTLE, DEFLECTION, LENGTHS, step, count)
-    )[0]
-    ends = [
-        path[:, 9:] + np.asarray(turned_all(path)) @ arm for path, arm in ((here, point), (there, 0 * point))
-    ]
+    there = np.asarray(flights(other, carried(start, point)[None], THROTTLE, DEFLECTION, LENGTHS, step, count))[0]
+    ends = [path[:, 9:] + np.asarray(turned_all(path)) @ arm for path, arm in ((here, point), (there, 0 * point))]
     # Runge–Kutta is not the same in both sets of states: (0.005 · 4)⁴/12 on a taut cable's 4 rad/s. Measured 4e-10.
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-8)
     np.testing.assert_allclose(here[:, 3:9], there[:, 3:9], atol=1e-8)

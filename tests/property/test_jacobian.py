@@ -35,9 +35,7 @@ def scenarios():
 def loops(scenarios):
     """Return the closed loop with every layer, around a throttle of its own."""
     command = Command(jnp.array([0.1, -0.05, 0.1, 0.12, 0.08, 0.1]), 0.02 * jnp.ones(4))
-    return {
-        form: ClosedLoop(scenario.system, scenario.law(), command) for form, scenario in scenarios.items()
-    }
+    return {form: ClosedLoop(scenario.system, scenario.law(), command) for form, scenario in scenarios.items()}
 
 
 def candidates(elongations, seed, count):
@@ -91,9 +89,7 @@ def closed_slopes(loop, vectors):
 def open_rate(plant, vector):
     """Return the plant's derivative for one vector of 12 states, cable length, 6 throttles, 4 deflections."""
     command = Command(vector[13:19], vector[19:23])
-    return plant.derivative(
-        jnp.asarray(TIME), State.from_vector(vector[:12]), command, vector[12:13]
-    ).as_vector()
+    return plant.derivative(jnp.asarray(TIME), State.from_vector(vector[:12]), command, vector[12:13]).as_vector()
 
 
 @eqx.filter_jit
@@ -168,9 +164,7 @@ def test_plant_jacobian(scenarios, form, cable):
 @given(unit=arrays(np.float64, 12, elements=st.floats(-1.0, 1.0)), elongation=st.floats(0.1, 1.04))
 def test_slopes_are_finite_at_any_state(scenarios, unit, elongation):
     """Zeroes, denormals and all: hypothesis likes the corners that random numbers never meet."""
-    vector = np.concatenate(
-        [np.array([3.0, 1, 1, 0.15, 0.15, 0.15, 0.3, 0.3, 1.5, 0, 0, 0]) * unit, np.zeros(11)]
-    )
+    vector = np.concatenate([np.array([3.0, 1, 1, 0.15, 0.15, 0.15, 0.3, 0.3, 1.5, 0, 0, 0]) * unit, np.zeros(11)])
     vector[9:12] = 20.0 * elongation * unit[9:] / max(np.linalg.norm(unit[9:]), 1e-3)
     vector[12] = 20.0
     batch = np.repeat(vector[None], CASES, axis=0)  # the size that is compiled already
@@ -194,9 +188,7 @@ def looped(loops):
         form: np.concatenate([states(loop.plant, "slack", 21, 6), states(loop.plant, "taut", 22, 6)])
         for form, loop in loops.items()
     }
-    rates = {
-        form: np.stack([np.asarray(closed_once(loops[form], v)) for v in vectors[form]]) for form in BOTH
-    }
+    rates = {form: np.stack([np.asarray(closed_once(loops[form], v)) for v in vectors[form]]) for form in BOTH}
     return vectors, rates
 
 

@@ -111,9 +111,7 @@ def test_munk_moment_turns_the_nose_away_from_the_flow():
     wrench = apparent().wrench(jnp.asarray(DENSITY), jnp.array([u, v, w]), NONE, NONE, NONE, NONE)
     munk = (0.86 - 0.08) * DENSITY * VOLUME
     # Moments of 1e3 N m, two products each; d'Alembert: no force.
-    np.testing.assert_allclose(
-        np.asarray(wrench.moment), [0.0, munk * u * w, -munk * u * v], rtol=0, atol=1e-11
-    )
+    np.testing.assert_allclose(np.asarray(wrench.moment), [0.0, munk * u * w, -munk * u * v], rtol=0, atol=1e-11)
     np.testing.assert_array_equal(np.asarray(wrench.force), np.zeros(3))
 
 

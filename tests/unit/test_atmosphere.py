@@ -42,9 +42,7 @@ def test_column_is_in_hydrostatic_balance():
 
     altitudes = jnp.linspace(-500.0, 11000.0, 47)
     weight = -STANDARD_GRAVITY * jax.vmap(STANDARD.density)(altitudes)
-    np.testing.assert_allclose(
-        jax.vmap(jax.grad(pressure))(altitudes), weight, rtol=1e-13
-    )  # exact but for rounding
+    np.testing.assert_allclose(jax.vmap(jax.grad(pressure))(altitudes), weight, rtol=1e-13)  # exact but for rounding
 
 
 def test_ground_altitude_shifts_the_table():
@@ -56,9 +54,7 @@ def test_a_warm_day_keeps_the_pressure():
     # rho = p/(R T): at ISA + 15 K the density falls as T/(T + 15), T = 281.65 K at 1 000 m.
     warm = StandardAtmosphere(jnp.asarray(0.0), jnp.asarray(15.0))
     altitude = jnp.asarray(1000.0)
-    np.testing.assert_allclose(
-        warm.density(altitude) / STANDARD.density(altitude), 281.65 / 296.65, rtol=1e-14
-    )
+    np.testing.assert_allclose(warm.density(altitude) / STANDARD.density(altitude), 281.65 / 296.65, rtol=1e-14)
 
 
 def test_constant_atmosphere_has_no_gradient():

@@ -62,8 +62,7 @@ def test_low_centre_of_gravity_rights_the_ship(axis, name):
     """A small angle is answered by −m g z_G per radian about its own axis: the pendulum."""
     step = 1e-5
     moments = [
-        float(statics(jnp.zeros(3).at[axis].set(angle), jnp.zeros(3))[0].moment[axis])
-        for angle in (-step, step)
+        float(statics(jnp.zeros(3).at[axis].set(angle), jnp.zeros(3))[0].moment[axis]) for angle in (-step, step)
     ]
     slope = (moments[1] - moments[0]) / (2 * step)
     # Central difference of sine: step²/6 = 2e-11 relative, rounding 1e-13 · 600/1e-5 = 1e-8 relative.

@@ -220,7 +220,11 @@ def test_a_second_process_does_not_compile_again(tmp_path):
         environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
         environment.pop("JAX_COMPILATION_CACHE_DIR", None)
         done = subprocess.run(
-            [sys.executable, "-c", COUNT, str(tmp_path / "out")], env=environment, capture_output=True, text=True, check=True
+            [sys.executable, "-c", COUNT, str(tmp_path / "out")],
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=True,
         )
         counts.append([int(word) for word in done.stdout.splitlines()[-1].split()])
     (_, first_misses), (second_hits, second_misses) = counts

@@ -81,9 +81,7 @@ def test_a_vehicle_file_may_turn_a_fin():
     """`roll` is any angle: 0 starboard, 90° down."""
     ship = ts.load_scenario("hover", {"vehicle.fins.fin_top.roll": 0.7}).system.ship.fins
     np.testing.assert_allclose(ship.normal[3], [0.0, -np.sin(0.7), np.cos(0.7)], atol=1e-15)
-    np.testing.assert_allclose(
-        ship.aerodynamic_centre[3], [-5.9, 1.6 * np.cos(0.7), 1.6 * np.sin(0.7)], atol=1e-15
-    )
+    np.testing.assert_allclose(ship.aerodynamic_centre[3], [-5.9, 1.6 * np.cos(0.7), 1.6 * np.sin(0.7)], atol=1e-15)
 
 
 @pytest.mark.parametrize(("axis", "name"), [(0, "roll"), (1, "pitch"), (2, "yaw")])

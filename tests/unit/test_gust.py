@@ -26,9 +26,7 @@ def test_peak_is_in_the_middle_and_is_the_amplitude():
     np.testing.assert_allclose(velocity(START + PERIOD / 2), AMPLITUDE, rtol=1e-15)
     np.testing.assert_allclose(rate(START + PERIOD / 2), np.zeros(3), atol=1e-15)
     times = START + PERIOD * np.linspace(0.0, 1.0, 1001)
-    assert np.linalg.norm(jax.vmap(GUST.velocity)(times), axis=1).max() <= np.linalg.norm(AMPLITUDE) * (
-        1 + 1e-15
-    )
+    assert np.linalg.norm(jax.vmap(GUST.velocity)(times), axis=1).max() <= np.linalg.norm(AMPLITUDE) * (1 + 1e-15)
 
 
 @pytest.mark.parametrize("part", [0.25, 0.75])

@@ -117,9 +117,7 @@ def test_nose_straight_up_gives_a_number():
     assert np.isfinite(chi(0.0, [-10.0, 1.0, 0.0], pitch=np.pi / 2))
 
 
-@pytest.mark.parametrize(
-    ("distance", "weight"), [(8.0, 1.0), (4.0, 1.0), (3.0, 0.75), (1.0, 0.25), (0.01, 0.0025)]
-)
+@pytest.mark.parametrize(("distance", "weight"), [(8.0, 1.0), (4.0, 1.0), (3.0, 0.75), (1.0, 0.25), (0.01, 0.0025)])
 def test_fade_is_linear_within_its_radius(law, distance, weight):
     fading = ts.load_scenario("docking", {"control.heading.fade_radius": 4.0})
     faded = fading.law(layers=("heading",), sas=False).laws[0]

@@ -89,9 +89,7 @@ def test_shape_parameters_mean_what_they_say():
     shape = gertler_from_shape(10.0, 2.0, 0.4, 0.6, 0.05, 0.62)
     near = 1e-7
     # r² ≈ 2 ρ ξ at a blunt end, ρ = r₀ D²/L; the next term is of order `near`.
-    assert float(shape.radius_squared(jnp.asarray(near))) / (2 * near) == pytest.approx(
-        0.6 * 4 / 10, rel=1e-5
-    )
+    assert float(shape.radius_squared(jnp.asarray(near))) / (2 * near) == pytest.approx(0.6 * 4 / 10, rel=1e-5)
     tail = float(shape.radius_squared(jnp.asarray(10.0 - near))) / (2 * near)
     assert tail == pytest.approx(0.05 * 4 / 10, rel=1e-5)
     assert float(shape.radius(jnp.asarray(4.0))) == pytest.approx(1.0, rel=1e-12)

@@ -110,9 +110,7 @@ def test_every_combination_is_the_sum_of_its_layers(scenario, measurement, layer
 def test_order_does_not_matter(scenario, measurement):
     expected = answer(scenario.law(layers=LAYERS), measurement)
     for order in itertools.permutations(LAYERS):
-        np.testing.assert_allclose(
-            answer(scenario.law(layers=order), measurement), expected, rtol=0, atol=1e-15
-        )
+        np.testing.assert_allclose(answer(scenario.law(layers=order), measurement), expected, rtol=0, atol=1e-15)
 
 
 def test_nothing_at_all_corrects_nothing(measurement):

@@ -33,9 +33,7 @@ def cloud(seed):
 def body_of(masses, places):
     """Return the rigid body of a cloud, by the definitions of mass, centre and inertia matrix."""
     inertia = sum(m * (q @ q * np.eye(3) - np.outer(q, q)) for m, q in zip(masses, places, strict=True))
-    return RigidBody(
-        jnp.asarray(masses.sum()), jnp.asarray(masses @ places / masses.sum()), jnp.asarray(inertia)
-    )
+    return RigidBody(jnp.asarray(masses.sum()), jnp.asarray(masses @ places / masses.sum()), jnp.asarray(inertia))
 
 
 @jax.jit
@@ -54,9 +52,7 @@ def test_left_side_is_newtons_law_of_every_point(seed, motion):
     forces = masses[:, None] * point_acceleration
     expected = np.concatenate([forces.sum(axis=0), np.cross(places, forces).sum(axis=0)])
     found = np.asarray(left_side(body_of(masses, places), v, w, a, b))
-    size = (
-        np.abs(masses[:, None] * (1.0 + np.abs(places).max()) ** 2).sum() * (1.0 + np.abs(motion).max()) ** 2
-    )
+    size = np.abs(masses[:, None] * (1.0 + np.abs(places).max()) ** 2).sum() * (1.0 + np.abs(motion).max()) ** 2
     assert np.abs(found - expected).max() < ROUNDING * size
 
 

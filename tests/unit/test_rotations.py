@@ -111,9 +111,7 @@ def test_euler_rate_matrix_is_singular_at_the_pole():
 @given(vectors, vectors)
 def test_skew_is_the_cross_product(a, b):
     scale = float(jnp.linalg.norm(a) * jnp.linalg.norm(b))
-    np.testing.assert_allclose(
-        skew(a) @ b, np.cross(a, b), atol=1e-15 * scale
-    )  # two products, one difference
+    np.testing.assert_allclose(skew(a) @ b, np.cross(a, b), atol=1e-15 * scale)  # two products, one difference
     np.testing.assert_array_equal(skew(a), -skew(a).T)
 
 

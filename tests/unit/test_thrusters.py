@@ -116,9 +116,7 @@ def test_lapse_is_read_from_the_vehicle_file():
 
 
 def test_irreversible_is_read_from_the_vehicle_file():
-    thrusters = ts.load_scenario(
-        "docking", {"vehicle.thrusters.tail_down.reversible": False}
-    ).system.ship.thrusters
+    thrusters = ts.load_scenario("docking", {"vehicle.thrusters.tail_down.reversible": False}).system.ship.thrusters
     np.testing.assert_array_equal(np.asarray(thrusters.lowest_throttle), [-1, 0, -1, -1, -1, -1])
 
 

@@ -22,9 +22,7 @@ ATOL = 1e-9
 
 def test_a_downward_pull_at_the_nose_pitches_down():
     # Body axes nose, starboard, down: 10 N down, 2 m ahead of P, is -20 N m about starboard.
-    np.testing.assert_array_equal(
-        Wrench.at(jnp.array([2.0, 0, 0]), jnp.array([0, 0, 10.0])).moment, [0, -20, 0]
-    )
+    np.testing.assert_array_equal(Wrench.at(jnp.array([2.0, 0, 0]), jnp.array([0, 0, 10.0])).moment, [0, -20, 0])
 
 
 def test_as_vector_is_force_then_moment():

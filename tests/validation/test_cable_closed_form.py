@@ -30,9 +30,7 @@ elastic = LAWS["elastic_catenary"]
 RIGID = 1e13
 """EA [N] of a cable that all but does not stretch: strains of 1e-9 under the kilonewtons here."""
 
-shape = jax.jit(
-    lambda stiffness, d, length, load, arc: ElasticCatenary(stiffness).shape(d, length, load, arc)
-)
+shape = jax.jit(lambda stiffness, d, length, load, arc: ElasticCatenary(stiffness).shape(d, length, load, arc))
 STIFFNESS, LENGTH, WEIGHT = 69_760.0, 20.0, 0.08 * 9.80665
 
 
@@ -113,9 +111,7 @@ def test_bight_below_two_points_one_above_the_other(height):
     soft = elastic(STIFFNESS, span, LENGTH, down(WEIGHT))
     np.testing.assert_allclose(soft.ship, down(WEIGHT * leg), rtol=1e-9, atol=1e-12)  # LOAD_FLOOR
     rigid = LAWS["published"](STIFFNESS, span, LENGTH, down(WEIGHT))
-    np.testing.assert_allclose(
-        rigid.ship, down(WEIGHT * 0.5 * (1.0 + height) * LENGTH), rtol=1e-9, atol=1e-12
-    )
+    np.testing.assert_allclose(rigid.ship, down(WEIGHT * 0.5 * (1.0 + height) * LENGTH), rtol=1e-9, atol=1e-12)
 
 
 @pytest.mark.parametrize("height", [1.001, 1.01, 1.05, -1.02])
@@ -131,9 +127,7 @@ def test_taut_line_straight_up_under_its_own_weight(height):
 
 
 def test_bar_that_hangs_from_the_ship_with_its_lower_end_free():
-    # Its own weight stretches it by wL^2/2EA; held at exactly that height its lower end carries nothing. (All
-    # but plumb, 1e-8 to 1e-3 L aside, this is the hardest root of all: see the xfail in
-    # tests/property/test_cable.py.)
+    # Its own weight stretches it by wL^2/2EA; held at exactly that height its lower end carries nothing.
     height = LENGTH * (1.0 + WEIGHT * LENGTH / 2.0 / STIFFNESS)
     force = elastic(STIFFNESS, np.array([0.0, 0.0, -height]), LENGTH, down(WEIGHT))
     np.testing.assert_allclose(force.ship, down(WEIGHT * LENGTH), rtol=1e-9, atol=1e-9)

@@ -166,9 +166,7 @@ def test_flip_period(flipping):
     second = np.asarray(path[1])[:, 1]
     upward = np.flatnonzero((second[:-1] < 0) & (second[1:] >= 0))
     # Cubic interpolation of a passage sampled every 0.05 s: error (0.05/0.5)⁴ of the step.
-    crossings = [
-        np.roots(np.polyfit(times[i - 1 : i + 3] - times[i], second[i - 1 : i + 3], 3)) for i in upward
-    ]
+    crossings = [np.roots(np.polyfit(times[i - 1 : i + 3] - times[i], second[i - 1 : i + 3], 3)) for i in upward]
     passages = times[upward] + [
         min(r.real for r in c if abs(r.imag) < 1e-9 and -1e-6 < r.real < 0.0501) for c in crossings
     ]
@@ -196,9 +194,7 @@ def test_lotte_in_a_vacuum_tumbles_about_its_centre_of_gravity(vacuum):
     principal = np.array([0.05, 0.0, 0.3])
     rates, velocity = axes @ principal, np.array([1.0, -0.5, 0.3])
     times = np.linspace(0.0, 60.0, 121)
-    v, w, rotation, position = map(
-        np.asarray, tumbled(vacuum, jnp.asarray(velocity), jnp.asarray(rates), times)
-    )
+    v, w, rotation, position = map(np.asarray, tumbled(vacuum, jnp.asarray(velocity), jnp.asarray(rates), times))
     expected, _ = elliptic_rates(moments, principal, times)
     np.testing.assert_allclose(w @ axes, expected, atol=1e-9)  # rates of 0.3 rad/s, 1e-11 per step
     assert np.ptp(expected[:, 1]) > 0.02  # the motion is not a mere steady spin

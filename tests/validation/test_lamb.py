@@ -102,9 +102,7 @@ def test_factors_change_smoothly_with_fineness():
         step = 1e-5
         difference = (factors(fineness + step) - factors(fineness - step)) / (2 * step)
         found = [float(exact.axial), float(exact.lateral), float(exact.rotational)]
-        np.testing.assert_allclose(
-            found, difference, rtol=1e-6, atol=1e-9
-        )  # step²f‴/6 and rounding 1e-15/1e-5
+        np.testing.assert_allclose(found, difference, rtol=1e-6, atol=1e-9)  # step²f‴/6 and rounding 1e-15/1e-5
 
 
 def test_scenario_offers_lamb_instead_of_the_table():
@@ -112,9 +110,7 @@ def test_scenario_offers_lamb_instead_of_the_table():
     volume = 110.3
     length, diameter = 16.0, 3.98432
     expected = factors(length / diameter)
-    np.testing.assert_allclose(
-        np.asarray(ship.apparent_mass.translational), volume * expected[[0, 1, 1]], rtol=1e-13
-    )
+    np.testing.assert_allclose(np.asarray(ship.apparent_mass.translational), volume * expected[[0, 1, 1]], rtol=1e-13)
     gyration = (length**2 + diameter**2) / 20.0
     turning = volume * expected[2] * gyration
     np.testing.assert_allclose(np.asarray(ship.apparent_mass.rotational), [0.0, turning, turning], rtol=1e-13)

@@ -51,9 +51,7 @@ def _disagreement(force, across, down, expected):
 NORTH, DOWN = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 
 
-@pytest.mark.parametrize(
-    "elongation", [0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.999, 1.0, 1.001, 1.01, 1.05]
-)
+@pytest.mark.parametrize("elongation", [0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.999, 1.0, 1.001, 1.01, 1.05])
 def test_elastic_catenary_under_its_weight(elongation):
     for elevation in np.radians(ELEVATIONS):
         x, z = elongation * LENGTH * np.cos(elevation), elongation * LENGTH * np.sin(elevation)

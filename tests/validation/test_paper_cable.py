@@ -102,14 +102,11 @@ def _riboldi_catenary(span, length, load):
     offset = (length * np.sinh(z) - y_3 * (np.cosh(z) - 1.0)) / (2.0 * (np.cosh(z) - 1.0))  # Eq. 21
 
     def height(y):
-        return ((y_3 + offset) * np.sinh(omega * y) + offset * np.sinh(omega * (y_2 - y))) / np.sinh(
-            z
-        ) - offset
+        return ((y_3 + offset) * np.sinh(omega * y) + offset * np.sinh(omega * (y_2 - y))) / np.sinh(z) - offset
 
     def slope(y):
         return (
-            offset * omega * (np.cosh(omega * y) - np.cosh(omega * (y_2 - y)))
-            + omega * y_3 * np.cosh(omega * y)
+            offset * omega * (np.cosh(omega * y) - np.cosh(omega * (y_2 - y))) + omega * y_3 * np.cosh(omega * y)
         ) / np.sinh(z)
 
     return c_2, c_3, np.linalg.norm(load) / omega, y_2, height, slope
@@ -141,9 +138,7 @@ def test_published_force_is_that_of_the_papers_equations():
         ship = -scale * (c_2 + slope(y_2) * c_3)  # Eq. 24 at the ship, as the pull of the cable on it
         anchor = scale * (c_2 + slope(0.0) * c_3)
         largest = max(np.linalg.norm(ship), np.linalg.norm(anchor))
-        worst = max(
-            worst, *(np.linalg.norm(a - b) / largest for a, b in ((force.ship, ship), (force.anchor, anchor)))
-        )
+        worst = max(worst, *(np.linalg.norm(a - b) / largest for a, b in ((force.ship, ship), (force.anchor, anchor))))
     # 5e-15 found; the arccosh near 1 of Eq. 20 and the 1 - cosh of Eq. 21 may lose two digits more
     assert worst < 1e-12
 
@@ -156,9 +151,7 @@ def test_curve_is_the_papers_profile():
         y = points @ c_2
         assert (np.diff(y) > 0.0).all()
         assert y[-1] == pytest.approx(y_2, rel=1e-11)
-        np.testing.assert_allclose(
-            points @ c_3, height(y), rtol=0, atol=1e-10 * length
-        )  # steep ends multiply y
+        np.testing.assert_allclose(points @ c_3, height(y), rtol=0, atol=1e-10 * length)  # steep ends multiply y
 
 
 def test_largest_tension_is_at_an_end():

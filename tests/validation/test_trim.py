@@ -66,9 +66,7 @@ def test_docking_starts_from_rest(trimmed, form):
     assert point.outcome is ts.TrimOutcome.converged
     assert point.saturated == ()
     assert_steady(scenario, point)
-    np.testing.assert_array_equal(
-        np.asarray(point.state.as_vector())[:9], np.zeros(9)
-    )  # at rest, level, north
+    np.testing.assert_array_equal(np.asarray(point.state.as_vector())[:9], np.zeros(9))  # at rest, level, north
 
 
 @pytest.mark.parametrize("form", BOTH)
@@ -238,9 +236,7 @@ def test_cruise_and_hover_in_the_same_wind_are_one(cruise):
     hovering = ts.trim(ts.load_scenario("cruise", changes))
     assert hovering.outcome is ts.TrimOutcome.converged
     # Same loads from the same airspeed: rounding, times the condition of the problem (about 100).
-    np.testing.assert_allclose(
-        np.asarray(hovering.command.throttle), np.asarray(flying.command.throttle), atol=1e-9
-    )
+    np.testing.assert_allclose(np.asarray(hovering.command.throttle), np.asarray(flying.command.throttle), atol=1e-9)
     assert float(hovering.state.attitude[1]) == pytest.approx(float(flying.state.attitude[1]), abs=1e-9)
 
 
@@ -301,9 +297,7 @@ def test_aerostat_turns_with_the_wind(aerostat):
     turned = ts.trim(ts.load_scenario("aerostat", changes))
     assert turned.outcome is ts.TrimOutcome.converged
     # Both to 1e-6 N; the pendulum of 160 N over 50 m gives 3e-7 m, the hull's pitch stiffness less.
-    np.testing.assert_allclose(
-        np.asarray(turned.state.position), turn @ np.asarray(north.state.position), atol=1e-5
-    )
+    np.testing.assert_allclose(np.asarray(turned.state.position), turn @ np.asarray(north.state.position), atol=1e-5)
     expected = np.asarray(north.state.attitude) + np.array([0.0, 0.0, angle])
     np.testing.assert_allclose(np.asarray(turned.state.attitude), expected, atol=1e-6)
     assert float(turned.tension[0]) == pytest.approx(float(north.tension[0]), abs=1e-5)

@@ -34,7 +34,8 @@ def solve_symmetric(matrix: Float[Array, "6 6"], right: Float[Array, "6"]) -> Fl
     -----
     Block elimination: with the Schur complement S = C − B A⁻¹ Bᵀ, ω̇ = S⁻¹ (m − B A⁻¹ f), v̇ = A⁻¹ (f − Bᵀ ω̇). It
     needs two divisions where a factorisation element by element needs twenty, and unlike a LAPACK call it fuses
-    with its surroundings and vectorises over a batch.
+    with its surroundings and vectorises over a batch. Like every closed-form inverse it loses digits as the square
+    of the condition number; that of a ship's 3×3 blocks, in SI, is below 100.
     """
     lower = matrix[3:, :3]
     inverse = inverse3(matrix[:3, :3])

@@ -223,8 +223,9 @@ def points(
 
     Notes
     -----
-    t(s) = F_AP − l s; x(s) = ∫ t/|t| + t/EA ds. With T = |t|, T̄ the sum at 0 and s:
-    ∫ds/T = (2/w) artanh(ws/T̄), ∫V ds/T = s (V₀ + V_s)/T̄: no difference of nearly equal numbers, slack or taut.
+    t(s) = F_AP − l s; x(s) = ∫ t/|t| + t/EA ds. With T = |t|, V its part against the load, T̄ = T₀ + T_s:
+    ∫V/T ds = s (V₀ + V_s)/T̄ and ∫ds/T = (1/w) ln((T̄ + ws)/(T̄ − ws)). T̄ − ws = (T₀ + V₀) + (T_s − V_s), whose terms
+    are taken as H²/(T ∓ V) where they would cancel: the curve meets its end to 1e-11 L, slack, plumb or taut.
     """
     weight = jnp.sqrt(jnp.dot(load, load))
     upward = -load / weight
@@ -233,11 +234,15 @@ def points(
     lateral = jnp.dot(across, across)
     tension_start = jnp.sqrt(lateral + rise**2 + _TINY)
     rise_here = rise + weight * arc
-    total = tension_start + jnp.sqrt(lateral + rise_here**2 + _TINY)
-    fraction = jnp.minimum(weight * arc / total, 1.0 - 1e-16)
+    tension_here = jnp.sqrt(lateral + rise_here**2 + _TINY)
+    total = tension_start + tension_here
+    fraction = weight * arc / total
     small = fraction < 1e-4
-    safe = jnp.where(small, 0.5, fraction)
-    quotient = jnp.where(small, 1.0 + fraction**2 / 3.0, jnp.arctanh(safe) / safe)
+    low = jnp.where(rise < 0, lateral / (tension_start + jnp.abs(rise)), tension_start + rise)
+    high = jnp.where(rise_here > 0, lateral / (tension_here + jnp.abs(rise_here)), tension_here - rise_here)
+    rest = jnp.where(small, 1.0, low + high + _TINY)
+    logarithm = 0.5 * jnp.log((total + weight * arc) / rest)
+    quotient = jnp.where(small, 1.0 + fraction**2 / 3.0, logarithm / jnp.where(small, 1.0, fraction))
     straight = 2.0 * arc / total * quotient
     along = arc * (rise + rise_here) / total
     elastic = compliance * (arc[:, None] * anchor_force - 0.5 * arc[:, None] ** 2 * load)

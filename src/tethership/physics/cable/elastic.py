@@ -1,4 +1,4 @@
-"""The exact extensible catenary: one law from slack to taut, smooth everywhere. The default.
+"""The exact extensible catenary: one law from slack to taut, smooth but where it hangs exactly plumb. The default.
 
 Depends on: physics.cable.catenary. The theory is in that file's docstring.
 """
