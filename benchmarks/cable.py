@@ -103,8 +103,6 @@ def moorpy_rate(span: np.ndarray, count: int = 2000) -> tuple[float, int, float]
 
 def main() -> None:
     """Print the figures; with --json as one object."""
-    import tethership.physics.cable
-
     scenario = ts.load_scenario("docking")
     span, wind = geometries(0)
     compiled = jax.jit(jax.vmap(lambda d, v: ours(d, v, scenario), in_axes=-1, out_axes=-1))

@@ -114,7 +114,20 @@ def test_trim_without_an_answer_exits_with_3(run):
 
 
 def test_tension_of_the_paper(run, tmp_path):
-    words = "tension --end -11.3137 0 -11.3137 --length 20 --wind-vector -6 0 0 --json".split()
+    words = [
+        "tension",
+        "--end",
+        "-11.3137",
+        "0",
+        "-11.3137",
+        "--length",
+        "20",
+        "--wind-vector",
+        "-6",
+        "0",
+        "0",
+        "--json",
+    ]
     code, out, err = run(*words, "--out", tmp_path)
     assert (code, err) == (0, "")
     result = json.loads(out)
@@ -214,7 +227,8 @@ print(kinds.count("cache_hits"), kinds.count("cache_misses"))
 
 def test_a_second_process_does_not_compile_again(tmp_path):
     """JAX's persistent cache: the first process misses, the second hits for every program, the
-    integrator's included, and misses none."""
+    integrator's included, and misses none.
+    """
     counts = []
     for _ in range(2):
         environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
