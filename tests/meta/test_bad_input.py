@@ -161,10 +161,11 @@ def test_start_beyond_breaking(docking):
 def test_start_docked_underground_or_pitched(docking, point):
     with pytest.raises(ts.ConfigError, match="the start is docked already"):
         ts.dock(docking.changed({"stop.cable_length": 30.0}), point)
+    low = docking.changed({"ground.anchor_height": 0.0, "trim.elevation": -0.3})
+    below = ts.trim(low)
     with pytest.raises(ts.ConfigError, match=r"the start has the hull \d+\.\d+ m below ground"):
-        low = docking.changed({"ground.anchor_height": 0.0, "trim.elevation": -0.3})
-        ts.dock(low, ts.trim(low))
-    with pytest.raises(ts.ConfigError, match="beyond stop.largest_pitch"):
+        ts.dock(low, below)
+    with pytest.raises(ts.ConfigError, match=r"beyond stop\.largest_pitch"):
         ts.dock(docking.changed({"stop.largest_pitch": 0.1}), point)
 
 
