@@ -182,7 +182,7 @@ def fly_segment(
     """
     field, margin = _traced(loop, stop, start, vector)
     solution = diffrax.diffeqsolve(
-        diffrax.ODETerm(lambda t, y, _: field(t, y)),
+        diffrax.ODETerm(lambda t, y, _: field(jnp.asarray(t), y)),
         METHODS[stepping.method](),
         start,
         end,
@@ -191,7 +191,7 @@ def fly_segment(
         saveat=diffrax.SaveAt(t1=True, dense=True),
         stepsize_controller=_controller(stepping, loop.plant.environment.corner_times()),
         event=diffrax.Event(
-            lambda t, y, args, **_: margin(t, y),
+            lambda t, y, args, **_: margin(jnp.asarray(t), y),
             optimistix.Bisection(rtol=1e-12, atol=1e-10),
         ),
         max_steps=SEGMENT_STEPS,
