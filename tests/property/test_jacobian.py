@@ -130,34 +130,36 @@ STEP = 3e-5
 
 
 @pytest.mark.parametrize("form", BOTH)
-@pytest.mark.parametrize("cable", ["slack", "pulling", "taut"])
-def test_closed_loop_jacobian(loops, form, cable):
+def test_closed_loop_jacobian(loops, form):
+    """With respect to the twelve states and the cable's length, hanging, pulling and taut."""
     loop = loops[form]
-    vectors = states(loop.plant, cable, seed=11)
-    exact = np.asarray(closed_slopes(loop, vectors))
-    error = mismatch(exact, differences(lambda y: closed(loop, y), vectors, STEP))
-    assert np.isfinite(exact).all()
-    # Measured 5e-9 at most. The laws clip (throttles, set-points, winch), and a case whose stencil steps over a corner
-    # would have no derivative: with this seed none does.
-    assert error.max() < 1e-7
-    slowing = np.abs(exact[:, 12]).max(axis=1) > 0.0  # the winch answers the tension
-    assert slowing.all() if cable == "pulling" else not slowing.any()
+    for regime in TENSIONS:  # not parametrised: one compiled program serves all three
+        vectors = states(loop.plant, regime, seed=11)
+        exact = np.asarray(closed_slopes(loop, vectors))
+        error = mismatch(exact, differences(lambda y: closed(loop, y), vectors, STEP))
+        assert np.isfinite(exact).all(), regime
+        # Measured 5e-9 at most. The laws clip (throttles, set-points, winch), and a case whose stencil steps over a
+        # corner would have no derivative: with this seed none does.
+        assert error.max() < 1e-7, regime
+        slowing = np.abs(exact[:, 12]).max(axis=1) > 0.0  # the winch answers the tension
+        assert slowing.all() if regime == "pulling" else not slowing.any(), regime
 
 
 @pytest.mark.parametrize("form", BOTH)
-@pytest.mark.parametrize("cable", ["slack", "pulling", "taut"])
-def test_plant_jacobian(scenarios, form, cable):
+def test_plant_jacobian(scenarios, form):
     """With respect to states, cable length, throttles and deflections: A and U of the linear model."""
     plant = scenarios[form].system
     rng = np.random.default_rng(5)
     inputs = np.hstack([rng.uniform(-1, 1, (CASES, 6)), rng.uniform(-0.3, 0.3, (CASES, 4))])
-    vectors = np.hstack([states(plant, cable, seed=12), inputs])
-    exact = np.asarray(plant_slopes(plant, vectors))
-    error = mismatch(exact, differences(lambda y: plant_rates(plant, y), vectors, STEP))
-    assert np.isfinite(exact).all()
-    assert error.max() < 1e-7  # measured 6e-10 at most
-    # The cable's pull is there: its length matters, much more when taut.
-    assert (np.abs(exact[:, :3, 12]).max(axis=1) > (1e-4 if cable == "slack" else 1.0)).all()
+    for regime in TENSIONS:
+        vectors = np.hstack([states(plant, regime, seed=12), inputs])
+        exact = np.asarray(plant_slopes(plant, vectors))
+        error = mismatch(exact, differences(lambda y: plant_rates(plant, y), vectors, STEP))
+        assert np.isfinite(exact).all(), regime
+        assert error.max() < 1e-7, regime  # measured 6e-10 at most
+        # The cable's pull is there: its length matters, much more when taut.
+        pull = np.abs(exact[:, :3, 12]).max(axis=1)
+        assert (pull > (1e-4 if regime == "slack" else 1.0)).all(), regime
 
 
 @settings(deadline=None, derandomize=True, max_examples=25)
@@ -258,19 +260,19 @@ def corners(scenarios):
 
 
 @pytest.mark.parametrize("form", BOTH)
-@pytest.mark.parametrize("air", ["wind", "still"])
-def test_slopes_are_finite_where_norms_vanish(scenarios, corners, form, air):
+def test_slopes_are_finite_where_norms_vanish(scenarios, corners, form):
     """In wind and at zero airspeed; tether point exactly above, below and at the anchor; forward and reverse."""
     named, still = corners
-    plant = scenarios[form].system if air == "wind" else still[form]
     batch = np.resize(np.stack(list(named.values())), (CASES, 23))
-    forward = np.asarray(plant_slopes(plant, batch))[: len(named)]
-    for name, slope in zip(named, forward, strict=True):
-        assert np.isfinite(slope).all(), name
     weights = np.linspace(-1.0, 1.0, 12)
-    backward = np.asarray(plant_gradients(plant, batch, weights))[: len(named)]
-    # The same derivative by the transposed program: rounding, on entries up to 1e3 where the ends coincide.
-    np.testing.assert_allclose(backward, np.einsum("i,aij->aj", weights, forward), rtol=1e-8, atol=1e-8)
+    for air, plant in (("wind", scenarios[form].system), ("still", still[form])):
+        forward = np.asarray(plant_slopes(plant, batch))[: len(named)]
+        for name, slope in zip(named, forward, strict=True):
+            assert np.isfinite(slope).all(), (air, name)
+        backward = np.asarray(plant_gradients(plant, batch, weights))[: len(named)]
+        # The same derivative by the transposed program: rounding, on entries up to 1e3 where the ends coincide.
+        expected = np.einsum("i,aij->aj", weights, forward)
+        np.testing.assert_allclose(backward, expected, rtol=1e-8, atol=1e-8, err_msg=air)
 
 
 @pytest.mark.parametrize("form", BOTH)

@@ -116,7 +116,7 @@ class AbstractEnvelope(eqx.Module):
 
     @abc.abstractmethod
     def potential(self, air_velocity: Float[Array, "3"], rates: Float[Array, "3"]) -> Wrench:
-        """Return the slices' wrench about B per ρ(k₂−k₁), body axes."""
+        """Return the slices' wrench about B per ρ(k₂−k₁), body axes [N m³/kg, N m⁴/kg]; arguments as in `wrench`."""
 
     def viscous(self, air_velocity: Float[Array, "3"], rates: Float[Array, "3"]) -> Wrench:
         """Return the drag per ρ about B, body axes [N m³/kg, N m⁴/kg].

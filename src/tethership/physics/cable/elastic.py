@@ -37,5 +37,5 @@ class ElasticCatenary(AbstractTensionLaw):
         return points(anchor, regularised(load), 1.0 / self.stiffness, arc)
 
     def regime(self, elongation: Float[Array, ""]) -> Float[Array, ""]:
-        """Return 0 where e < 1 (slack), 2 where the chord is longer than the unstretched cable (taut)."""
+        """Return 0 [-] where e < 1 (slack), 2 where the chord is longer than the unstretched cable (taut)."""
         return jnp.where(elongation < 1.0, 0, 2)

@@ -82,5 +82,5 @@ class PublishedTension(AbstractTensionLaw):
         return fraction * span + (1.0 - share) * (curve - fraction * sagging)
 
     def regime(self, elongation: Float[Array, ""]) -> Float[Array, ""]:
-        """Return 0 below e_c (slack), 1 up to e_e (joint), 2 above (taut)."""
+        """Return 0 [-] below e_c (slack), 1 up to e_e (joint), 2 above (taut)."""
         return jnp.where(elongation < self.joint_start, 0, jnp.where(elongation <= self.joint_end, 1, 2))

@@ -1,0 +1,143 @@
+"""The house keeps its promises: names resolve, parameters have units, data files have sources, versions agree.
+
+If one of these failed, a stranger could not say from one file which unit and which axes, or the README would lie.
+"""
+
+import importlib
+import inspect
+import pkgutil
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import equinox as eqx
+import pytest
+
+import tethership as ts
+from tethership.results import VARIABLES
+from tethership.scenario.load import list_packaged, packaged_text
+
+ROOT = Path(__file__).parents[2]
+
+
+def modules(package):
+    """Return all modules of a package."""
+    top = importlib.import_module(package)
+    found = pkgutil.walk_packages(top.__path__, f"{package}.")
+    return [importlib.import_module(info.name) for info in found]
+
+
+MODULES = modules("tethership")
+
+
+def public_functions():
+    """Return the functions and methods that physics offers."""
+    for module in MODULES:
+        if ".physics." not in module.__name__:
+            continue
+        for name, thing in vars(module).items():
+            if getattr(thing, "__module__", "") != module.__name__ or name.startswith("_"):
+                continue
+            if inspect.isfunction(thing):
+                yield f"{module.__name__}.{name}", thing
+            elif inspect.isclass(thing):
+                for inner, method in vars(thing).items():
+                    if inspect.isfunction(method) and not inner.startswith("_"):
+                        yield f"{module.__name__}.{name}.{inner}", method
+
+
+def test_public_names_resolve():
+    for name in ts.__all__:
+        assert getattr(ts, name) is not None
+    with pytest.raises(AttributeError, match="no attribute 'dok'"):
+        _ = ts.dok
+
+
+@pytest.mark.parametrize("module", MODULES, ids=lambda module: module.__name__)
+def test_module_says_what_it_is(module):
+    assert module.__doc__
+    assert len(module.__doc__) > 20
+
+
+def test_every_parameter_of_physics_has_a_unit():
+    """Each field of each module of physics is described, with a unit in brackets or a type that has its own."""
+    missing = []
+    for module in MODULES:
+        if ".physics." not in module.__name__:
+            continue
+        for name, thing in vars(module).items():
+            if not (inspect.isclass(thing) and issubclass(thing, eqx.Module)) or thing.__module__ != module.__name__:
+                continue
+            text = "".join(base.__doc__ or "" for base in thing.__mro__ if issubclass(base, eqx.Module))
+            for field in getattr(thing, "__dataclass_fields__", {}):
+                described = re.search(
+                    rf"\n    (?:\w+, )*{field}(?:, \w+)* : [^\n]*\n(.*?)(?=\n    \w[\w, ]* : |\Z)", text, re.DOTALL
+                )
+                of_its_own = "SliceIntegrals" in str(thing.__dataclass_fields__[field].type)
+                if not described or ("[" not in described.group(1) and not of_its_own):
+                    missing.append(f"{module.__name__}.{name}.{field}")
+    assert missing == []
+
+
+def test_every_function_of_physics_names_a_unit():
+    """What it returns or takes is a quantity: a docstring without any bracketed unit or reference to one is wrong."""
+    accepted = ("[", "arguments as in", "arguments are", "zero;", "Number of")
+    missing = [
+        name for name, thing in public_functions() if not any(word in (thing.__doc__ or "") for word in accepted)
+    ]
+    assert missing == []
+
+
+def test_every_output_has_a_unit():
+    assert all(entry.unit and entry.meaning for entry in VARIABLES.values())
+
+
+def quantities(table, path=""):
+    """Return every quantity of a document with its path."""
+    if isinstance(table, dict):
+        if "value" in table:
+            yield path, table
+            return
+        for key, value in table.items():
+            yield from quantities(value, f"{path}.{key}")
+    if isinstance(table, list):
+        for index, value in enumerate(table):
+            yield from quantities(value, f"{path}.{index}")
+
+
+@pytest.mark.parametrize("name", list_packaged()["vehicles"])
+def test_vehicles_have_sources(name):
+    found = list(quantities(tomllib.loads(packaged_text("vehicles", name))))
+    assert len(found) > 20
+    for path, datum in found:
+        assert len(datum["source"]) > 5, path
+
+
+@pytest.mark.parametrize("name", list_packaged()["scenarios"])
+def test_scenarios_are_valid_and_trim(name):
+    point = ts.trim(ts.load_scenario(name))
+    assert point.outcome is ts.TrimOutcome.converged
+
+
+def test_versions_agree():
+    assert f"version: {ts.__version__}" in (ROOT / "CITATION.cff").read_text()
+    assert f"## {ts.__version__}" in (ROOT / "CHANGELOG.md").read_text()
+
+
+def test_readme_commands_exist():
+    text = (ROOT / "README.md").read_text()
+    used = set(re.findall(r"^(?:tethership|make) (\w+)", text, re.MULTILINE))
+    assert used >= {"dock", "trim", "tension", "new", "list", "test"}
+    for path in re.findall(r"\]\((?!http)([^)]+)\)", text):
+        assert (ROOT / path).exists(), path
+
+
+def test_starting_does_not_import_plotting():
+    """The command line starts without matplotlib and pint; they come when they are needed."""
+    code = (
+        "import sys, tethership.cli; print([m for m in ('matplotlib', 'xarray', 'scipy.optimize') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "matplotlib" not in done.stdout
