@@ -314,3 +314,26 @@ def test_aerostat_with_too_few_unknowns_has_no_equilibrium(aerostat):
 def test_names_of_the_vehicle_are_those_of_table_1():
     """The order #1 … #6, on which every hand-worked figure of these tests rests."""
     assert [thruster.name for thruster in docking().config.vehicle.thrusters] == NAMES
+
+
+def test_fixed_attitude_leaves_the_tether_point_where_it_is_held():
+    """A pitch given by hand turns the ship about its held tether point: same span, so the same tension."""
+    level = ts.trim(ts.load_scenario("docking"))
+    pitched = ts.trim(ts.load_scenario("docking"), fixed={"theta": 0.1})
+    assert float(pitched.tension[0]) == pytest.approx(float(level.tension[0]), rel=1e-12)
+    with pytest.raises(
+        ts.ConfigError, match="the tether point is held, so north, east and down follow; take out north"
+    ):
+        ts.trim(ts.load_scenario("docking"), fixed={"north": -10.0})
+
+
+@pytest.mark.parametrize("direction", [0.5, 1.0, 2.0, 3.0, -2.0])
+def test_aerostat_turns_with_the_wind(direction):
+    """The equilibrium is the same seen from the wind, wherever it comes from: the search starts nose into the wind."""
+    north = ts.trim(ts.load_scenario("aerostat"))
+    turned = ts.trim(ts.load_scenario("aerostat", {"wind.from_direction": direction}))
+    assert turned.outcome is ts.TrimOutcome.converged
+    # Two searches end within rounding of the same residual of 1e-9 N.
+    assert float(turned.tension[0]) == pytest.approx(float(north.tension[0]), rel=1e-8)
+    assert float(turned.state.attitude[2]) == pytest.approx(direction, abs=1e-8)
+    assert float(turned.state.attitude[1]) == pytest.approx(float(north.state.attitude[1]), abs=1e-8)

@@ -54,12 +54,10 @@ class Unknowns(eqx.Module):
 
 def find_unknowns(
     names: tuple[str, ...],
-    fixed: dict[str, float],
     thrusters: list[str],
     fins: list[str],
-    base: np.ndarray,
-) -> tuple[Unknowns, np.ndarray]:
-    """Return the choice, and all quantities with the fixed values in place.
+) -> Unknowns:
+    """Return the choice of what is looked for.
 
     Raises
     ------
@@ -74,13 +72,17 @@ def find_unknowns(
         index += [_place(member, every, list(groups)) for member in members]
     if not index:
         raise ConfigError("trim: nothing is looked for; name quantities, thrusters or `throttle` as unknowns")
-    for name, value in fixed.items():
-        base[_place(name, every, [])] = value
     index = sorted(set(index))
     scales = [*SCALES, *[1.0] * (len(thrusters) + len(fins))]
     efforts = [0.0] * 12 + [1.0] * (len(thrusters) + len(fins))
-    chosen = Unknowns(tuple(index), jnp.asarray([scales[i] for i in index]), jnp.asarray([efforts[i] for i in index]))
-    return chosen, base
+    return Unknowns(tuple(index), jnp.asarray([scales[i] for i in index]), jnp.asarray([efforts[i] for i in index]))
+
+
+def place_values(fixed: dict[str, float], thrusters: list[str], fins: list[str], base: np.ndarray) -> None:
+    """Put values [SI, rad] by name into all quantities, in place; raises ConfigError for a name that is none."""
+    every = [*QUANTITIES, *thrusters, *fins]
+    for name, value in fixed.items():
+        base[_place(name, every, [])] = value
 
 
 def _place(name: str, every: list[str], groups: list[str]) -> int:

@@ -19,7 +19,8 @@ class Measurement(NamedTuple):
     Attributes
     ----------
     velocity : Float[Array, "3"]
-        Ground velocity of P, (U, V, W), body axes [m/s].
+        Ground velocity of the centre of buoyancy B, (U, V, W), body axes [m/s]; at B, so that a law does not depend on
+        the choice of P.
     rates : Float[Array, "3"]
         p, q, r, body axes [rad/s].
     attitude : Float[Array, "3"]

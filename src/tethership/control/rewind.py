@@ -35,9 +35,10 @@ class RewindLaw(AbstractLaw):
 
         Notes
         -----
-        Ψ = max(Ψ̄ − κ_Ψ (|F| − F′), Ψ_min) where |F| > F′, else Ψ̄; returned is Ψ − Ψ̄.
+        Ψ = max(Ψ̄ − κ_Ψ (|F| − F′), Ψ_min) where |F| > F′, else Ψ̄; returned is Ψ − Ψ̄. A winch set slower than Ψ_min
+        is left at its rate.
         """
         excess = jnp.maximum(measurement.tension - self.threshold, 0.0)
         slowed = jnp.maximum(measurement.rewind_rate - self.gain * excess, self.slowest_rate)
-        rate = jnp.where(excess > 0, slowed, measurement.rewind_rate)
+        rate = jnp.minimum(slowed, measurement.rewind_rate)
         return Correction(rewind_rate=rate - measurement.rewind_rate), memory

@@ -36,8 +36,8 @@ from tethership.scenario.vehicle_schema import (
 )
 from tethership.system import Airship
 
-STRIPS = 12
-"""Strips of the cross-flow drag: 1e-9 of ∫2r and 2e-8 of ∫2r|x|³ (convergence test of the hull)."""
+STRIPS = 16
+"""Strips of the cross-flow drag, nose to l_h: 5e-12 of ∫2r, 3e-5 of ∫2r|x|³ with its kink at B."""
 
 OUTLINE = 41
 """Stations at which the hull's outline is kept for clearance and drawing."""

@@ -81,7 +81,7 @@ class ClosedLoop(eqx.Module):
         velocity_b = state.velocity + jnp.cross(state.rates, self.plant.ship.buoyancy.centre)
         count = len(cables)
         return Measurement(
-            velocity=state.velocity,
+            velocity=velocity_b,
             rates=state.rates,
             attitude=state.attitude,
             rate_of_climb=-rotation[2] @ velocity_b,
