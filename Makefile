@@ -24,7 +24,7 @@ bench: $(VENV)/.installed-dev
 	$(BIN)/python benchmarks/docking.py
 
 figures: $(VENV)/.installed
-	$(BIN)/tethership dock --wind 12 --out out/readme
+	$(BIN)/tethership dock --wind 12 --layers rewind,heading --out out/readme
 	cp out/readme/docking.png docs/docking.png
 
 $(VENV)/bin/python:

@@ -1,5 +1,14 @@
 """Errors a user can meet. Wrong input is a `ConfigError`; a computation without an answer a `SolveError`."""
 
+import difflib
+from collections.abc import Iterable
+
+
+def suggestion(name: str, known: Iterable[str]) -> str:
+    """Return "; did you mean 'x'?" for the nearest known name, or a full stop."""
+    near = difflib.get_close_matches(name, list(known), n=1)
+    return f"; did you mean {near[0]!r}?" if near else "."
+
 
 class TethershipError(Exception):
     """Base of all errors that this package raises on purpose."""

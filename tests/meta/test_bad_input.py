@@ -85,6 +85,36 @@ SCENARIO_CASES = {
         'formulation = "consistant"',
         r"formulation: it is 'consistant'; input should be 'consistent' or 'published'",
     ),
+    "angle for a fraction": (
+        'fraction = { value = 0.3333333333333333, unit = "1"',
+        'fraction = { value = 0.3333333333333333, unit = "deg"',
+        r"gusts.0.fraction: the unit is 'deg', which is no '1'",
+    ),
+    "number for an angle": (
+        'from_direction = { value = 270.0, unit = "deg"',
+        'from_direction = { value = 270.0, unit = "1"',
+        r"gusts.0.from_direction: the unit is '1', which is no 'rad'; give deg or rad",
+    ),
+    "layer twice": (
+        'layers = ["rewind", "heading", "navigation"]',
+        'layers = ["rewind", "rewind"]',
+        r"control.layers: layer 'rewind' is named twice",
+    ),
+    "winch too slow": (
+        'rewind_rate = { value = 0.3, unit = "m/s"',
+        'rewind_rate = { value = 3.0, unit = "m/s"',
+        r"cables.nose.winch: rewind_rate 3 m/s is beyond fastest_rate 0.5 m/s",
+    ),
+    "two breaking forces": (
+        "control_threshold = {",
+        'cable_break = { value = 100.0, unit = "N" }\ncontrol_threshold = {',
+        r"limits.cable_break 100 N is not the breaking_force 3040 N; leave it out of limits",
+    ),
+    "two numbers for three": (
+        "tether_point = { value = [6.97, 0.0, 0.0]",
+        "tether_point = { value = [6.97, 0.0]",
+        r"cables.nose.tether_point.2: there are too few numbers in the list",
+    ),
     "joint": ("joint_start = { value = 0.99", "joint_start = { value = 1.01", r"joint_start 1.01 and joint_end 1.05"),
     "vehicle not there": ('vehicle = "lotte" ', 'vehicle = "loti" ', r"no vehicle 'loti'; did you mean 'lotte'\?"),
 }
@@ -167,6 +197,17 @@ def test_start_docked_underground_or_pitched(docking, point):
         ts.dock(low, below)
     with pytest.raises(ts.ConfigError, match=r"beyond stop\.largest_pitch"):
         ts.dock(docking.changed({"stop.largest_pitch": 0.1}), point)
+
+
+def test_layers_without_a_cable(point):
+    hover = ts.load_scenario("hover")
+    with pytest.raises(ts.ConfigError, match=r"layers heading need a cable, and hover has none; use --layers none"):
+        ts.dock(hover, point, layers=["heading"])
+
+
+def test_own_law_with_a_name_of_the_package(docking, point):
+    with pytest.raises(ts.ConfigError, match="a law of one's own is named 'rewind', as one of the package"):
+        ts.dock(docking, point, own_laws={"rewind": docking.law([])})
 
 
 def test_layers_and_unknowns(docking, point):

@@ -84,6 +84,26 @@ def test_dock_prints_a_table(run, tmp_path):
     assert "docking.png" in out
 
 
+def test_set_takes_units_shares_and_empty_lists(run, tmp_path):
+    words = ["dock", "--set", "stop.time_limit=1", "--set", "wind.from_direction=5deg", "--set", "gusts=[]", "--json"]
+    words += ["--set", 'trim.unknowns=["throttle","psi"]', "--set", "control.heading.share.port_forward=0.5"]
+    code, _, err = run(*words, "--out", tmp_path)
+    assert (code, err) == (0, "")
+    stored = ts.Flight.load(tmp_path / "flight.nc").attributes["scenario"]
+    assert stored["wind"]["from_direction"] == {"unit": "deg", "value": 5.0}
+    assert stored["gusts"] == []
+    assert stored["control"]["heading"]["share"]["port_forward"] == 0.5
+    code, _, err = run("dock", "--from", tmp_path / "flight.nc", "--out", tmp_path)
+    assert code == 2
+    assert "would be overwritten; choose another folder with --out" in err
+
+
+def test_new_in_a_folder_can_be_flown(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run("new", "sub/mine.toml")[0] == 0
+    assert ts.load_scenario("sub/mine.toml").config == ts.load_scenario("docking").config
+
+
 def test_from_takes_no_other_input(run, tmp_path):
     code, out, err = run("dock", "--from", tmp_path / "x.nc", "--wind", 3)
     assert (code, out) == (2, "")

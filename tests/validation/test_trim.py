@@ -328,7 +328,7 @@ def test_fixed_attitude_leaves_the_tether_point_where_it_is_held():
 
 
 @pytest.mark.parametrize("direction", [0.5, 1.0, 2.0, 3.0, -2.0])
-def test_aerostat_turns_with_the_wind(direction):
+def test_the_search_starts_nose_into_the_wind(direction):
     """The equilibrium is the same seen from the wind, wherever it comes from: the search starts nose into the wind."""
     north = ts.trim(ts.load_scenario("aerostat"))
     turned = ts.trim(ts.load_scenario("aerostat", {"wind.from_direction": direction}))

@@ -1,13 +1,11 @@
 """Which quantities a trim looks for, by name. Depends on: system.state, errors."""
 
-import difflib
-
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from tethership.errors import ConfigError
+from tethership.errors import ConfigError, suggestion
 from tethership.system.state import STATE_NAMES
 
 QUANTITIES = ("velocity_north", "velocity_east", "velocity_down", *STATE_NAMES[3:])
@@ -89,6 +87,5 @@ def _place(name: str, every: list[str], groups: list[str]) -> int:
     """Return the place of a name, or raise ConfigError that offers the nearest."""
     if name in every:
         return every.index(name)
-    near = difflib.get_close_matches(name, [*every, *groups], n=1)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
+    hint = suggestion(name, [*every, *groups])
     raise ConfigError(f"trim: unknown quantity {name!r}{hint} Allowed: {', '.join([*every, *groups])}")

@@ -3,6 +3,7 @@
 import contextlib
 import json
 import math
+import re
 import sys
 import time
 from collections.abc import Iterator
@@ -13,6 +14,9 @@ import typer
 
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario, load_scenario
+
+NUMBER_WITH_UNIT = re.compile(r"(?P<number>[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(?P<unit>[A-Za-z°][^\s].*|m|s|N|K)")
+"""A number with a unit, as in `270deg` or `12 m/s`."""
 
 WRONG_INPUT = 2
 """Exit code for wrong input."""
@@ -29,7 +33,11 @@ OutOption = Annotated[Path, typer.Option(help="Folder for the files that are wri
 JsonOption = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, nothing else.")]
 SetOption = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Change one value of the scenario, SI and radians; repeatable."),
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change one value of the scenario: SI and radians, or with its unit (270deg); repeatable.",
+    ),
 ]
 
 
@@ -61,10 +69,13 @@ def chosen_scenario(name: str, wind: float | None, formulation: str | None, chan
 
 
 def _change(text: str) -> tuple[str, Any]:
-    """Return key and value of `key=value`; the value is JSON where it can be, else a word."""
+    """Return key and value of `key=value`; a number with a unit, JSON, or else a word."""
     key, equals, value = text.partition("=")
     if not equals or not key:
         raise ConfigError(f"--set {text!r} is no change; write --set key=value, e.g. --set wind.speed=9")
+    with_unit = NUMBER_WITH_UNIT.fullmatch(value)
+    if with_unit is not None:
+        return key, {"value": float(with_unit["number"]), "unit": with_unit["unit"]}
     try:
         return key, json.loads(value)
     except json.JSONDecodeError:

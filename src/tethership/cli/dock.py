@@ -50,9 +50,14 @@ def dock(
 
     Writes flight.nc (labelled data with the full input) and docking.png (the paper's four panels) into --out.
     """
-    if from_ is not None and (wind, formulation, layers, changes) != (None, None, None, None):
-        raise ConfigError("--from flies the stored input as it is; leave out --wind, --formulation, --layers, --set")
+    given = (scenario, wind, formulation, layers, changes, no_sas, solver)
+    if from_ is not None and given != ("docking", None, None, None, None, False, "adaptive"):
+        raise ConfigError(
+            "--from flies the stored input as it is; leave out the scenario and all flags but --out, --json"
+        )
     writable_folder(out)
+    if from_ is not None and from_.resolve() == (out / "flight.nc").resolve():
+        raise ConfigError(f"--from {from_} would be overwritten; choose another folder with --out")
     if from_ is not None:
         flown_scenario, flight, trim_outcome = _again(from_)
     else:
@@ -62,6 +67,9 @@ def dock(
         point = _trimmed(flown_scenario, json)
         trim_outcome = point.outcome.name
         flight = _flown(flown_scenario, point, names, False if no_sas else None, solver)
+        if point.saturated:
+            message = f"tethership: warning: {point.outcome.value} ({', '.join(point.saturated)})"
+            typer.echo(message, err=True)
     flight.save(out / "flight.nc")
     result = summary(flown_scenario, flight) | {"trim_outcome": trim_outcome}
     result["files"] = [str(out / "flight.nc"), *_drawn(flight, out)]
@@ -90,8 +98,6 @@ def _trimmed(scenario: Scenario, as_json: bool) -> "TrimPoint":
             print_json({"outcome": point.outcome.name, "message": point.outcome.value, "residual": point.residual})
         typer.echo(f"tethership: {point.outcome.value}", err=True)
         raise typer.Exit(NO_ANSWER)
-    if point.saturated:
-        typer.echo(f"tethership: warning: {point.outcome.value} ({', '.join(point.saturated)})", err=True)
     return point
 
 
@@ -166,6 +172,7 @@ def summary(scenario: Scenario, flight: "Flight") -> dict[str, Any]:
         "layers": flight.attributes["layers"],
         "sas": flight.attributes["sas"],
         "formulation": scenario.formulation,
+        "limits": flight.attributes["limits"],
         "steps": flight.attributes["steps"],
     }
 

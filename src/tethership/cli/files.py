@@ -45,11 +45,12 @@ def new(
     json: JsonOption = False,
 ) -> None:
     """Write a commented copy of a packaged scenario and its vehicle, to edit."""
+    name = name.removesuffix(".toml")
     text = packaged_text("scenarios", scenario)
     vehicle = next(line for line in text.splitlines() if line.startswith("vehicle ="))
     source = vehicle.split('"')[1]
     texts = {
-        out / f"{name}.toml": text.replace(vehicle, f'vehicle = "{name}_vehicle.toml"'),
+        out / f"{name}.toml": text.replace(vehicle, f'vehicle = "{Path(name).name}_vehicle.toml"'),
         out / f"{name}_vehicle.toml": packaged_text("vehicles", source),
     }
     for path in texts:

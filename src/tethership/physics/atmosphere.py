@@ -36,13 +36,13 @@ class StandardAtmosphere(AbstractAtmosphere):
 
     Attributes
     ----------
-    ground_altitude : float
+    origin_altitude : float
         Altitude of the origin of the ground frame above mean sea level [m].
     temperature_offset : float
         Deviation from ISA temperature, the pressure being kept [K].
     """
 
-    ground_altitude: Float[Array, ""]
+    origin_altitude: Float[Array, ""]
     temperature_offset: Float[Array, ""]
 
     def density(self, altitude: Float[Array, ""]) -> Float[Array, ""]:
@@ -57,7 +57,7 @@ class StandardAtmosphere(AbstractAtmosphere):
         -----
         T = T₀ − λh, p = p₀ (T/T₀)^(g/(Rλ)), ISO 2533.
         """
-        standard = SEA_LEVEL_TEMPERATURE - TEMPERATURE_LAPSE * (altitude + self.ground_altitude)
+        standard = SEA_LEVEL_TEMPERATURE - TEMPERATURE_LAPSE * (altitude + self.origin_altitude)
         exponent = STANDARD_GRAVITY / (GAS_CONSTANT_AIR * TEMPERATURE_LAPSE)
         pressure = SEA_LEVEL_PRESSURE * jnp.exp(exponent * jnp.log(standard / SEA_LEVEL_TEMPERATURE))
         return pressure / (GAS_CONSTANT_AIR * (standard + self.temperature_offset))

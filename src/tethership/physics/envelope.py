@@ -116,7 +116,7 @@ class AbstractEnvelope(eqx.Module):
 
     @abc.abstractmethod
     def potential(self, air_velocity: Float[Array, "3"], rates: Float[Array, "3"]) -> Wrench:
-        """Return the slices' wrench about B per ρ(k₂−k₁), body axes [N m³/kg, N m⁴/kg]; arguments as in `wrench`."""
+        """Return the slices' wrench about B per ρ(k₂−k₁), body axes [N m³/kg, N m⁴/kg]; arguments as in `viscous`."""
 
     def viscous(self, air_velocity: Float[Array, "3"], rates: Float[Array, "3"]) -> Wrench:
         """Return the drag per ρ about B, body axes [N m³/kg, N m⁴/kg].
@@ -185,7 +185,7 @@ class PublishedEnvelope(AbstractEnvelope):
     axial_drag_area: Float[Array, ""]
 
     def potential(self, air_velocity: Float[Array, "3"], rates: Float[Array, "3"]) -> Wrench:
-        """Return η_k u μ_x v_⊥ over 0 ≤ ξ ≤ l_h; arguments as in `AbstractEnvelope.wrench`."""
+        """Return η_k u μ_x v_⊥ over 0 ≤ ξ ≤ l_h; arguments as in `AbstractEnvelope.viscous`."""
         return self.front.scaled(self.slice_efficiency).wrench(air_velocity, rates, slope_only=True)
 
 
@@ -203,6 +203,6 @@ class ConsistentEnvelope(AbstractEnvelope):
     axial_drag_area: Float[Array, ""]
 
     def potential(self, air_velocity: Float[Array, "3"], rates: Float[Array, "3"]) -> Wrench:
-        """Return (η_k − 1) · slices ahead of l_h − slices behind; arguments as in `AbstractEnvelope.wrench`."""
+        """Return (η_k − 1) · slices ahead of l_h − slices behind; arguments as in `AbstractEnvelope.viscous`."""
         change = self.front.scaled(self.slice_efficiency - 1.0) + self.tail.scaled(jnp.asarray(-1.0))
         return change.wrench(air_velocity, rates, slope_only=False)

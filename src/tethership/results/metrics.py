@@ -81,7 +81,13 @@ def control_energy(time: Array, throttle: Array) -> float:
 
 
 def jumps(angle: Array) -> int:
-    """Return how often the misalignment χ jumps by more than a right angle between samples."""
+    """Return how often the misalignment χ jumps by more than a right angle between samples.
+
+    Notes
+    -----
+    By π when the tether point passes over the anchor, by 2π when the anchor is astern and passes from port to
+    starboard: either way a law proportional to χ turns its thrust about.
+    """
     return int(np.sum(np.abs(np.diff(angle)) > 0.5 * np.pi))
 
 
@@ -98,8 +104,9 @@ def docking_metrics(flight: dict[str, Array], limits: list[float]) -> dict[str, 
     Notes
     -----
     Tension is that at the tether point of the cable that pulls hardest, refined before its peak and its time over a
-    limit are read off. θ_rms is returned in degrees, all else in
-    SI. Without a cable the tension metrics are NaN-free zeros.
+    limit are read off; `tension_largest` is the peak anywhere along any cable, which is what breaks it. Jumps of the
+    misalignment are those of the first cable. θ_rms is in degrees, all else in SI. Without a cable tensions are zero
+    and `cable_clearance_min` is None.
     """
     time = flight["time"]
     tensions = flight["tension"]
@@ -113,6 +120,7 @@ def docking_metrics(flight: dict[str, Array], limits: list[float]) -> dict[str, 
     return {
         "tension_max": float(fine_tension.max()),
         "tension_mean": mean(time, tension),
+        "tension_largest": float(flight["tension_largest"].max(initial=0.0)),
         "rewind_rate_min": float(rates.min()) if cables else 0.0,
         "seconds_above": [seconds_above(fine_time, fine_tension, limit) for limit in limits],
         "ADC": duty_cycle(time, flight["throttle"]),

@@ -62,7 +62,7 @@ def build_environment(config: ScenarioConfig) -> Environment:
         air = ConstantAtmosphere(jnp.asarray(config.atmosphere.density))
     else:
         air = StandardAtmosphere(
-            jnp.asarray(config.atmosphere.ground_altitude), jnp.asarray(config.atmosphere.temperature_offset)
+            jnp.asarray(config.atmosphere.origin_altitude), jnp.asarray(config.atmosphere.temperature_offset)
         )
     height = config.ground.anchor_height
     ground = jnp.asarray(0.0 if height is None else height)

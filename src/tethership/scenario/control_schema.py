@@ -3,12 +3,12 @@
 Depends on: scenario.quantity.
 """
 
-import difflib
 from collections.abc import Iterable, Sequence
 from typing import Annotated
 
 from pydantic import Field, field_validator
 
+from tethership.errors import suggestion
 from tethership.scenario.quantity import Quantity, Table
 
 LAYERS = ("rewind", "heading", "navigation")
@@ -20,12 +20,13 @@ Share = dict[str, float]
 
 def check_layers(names: Iterable[str]) -> tuple[str, ...]:
     """Return the names of the layers, or raise ValueError that offers the nearest known one."""
-    for name in names:
+    chosen = tuple(names)
+    for name in chosen:
         if name not in LAYERS:
-            near = difflib.get_close_matches(name, LAYERS, n=1)
-            hint = f"; did you mean {near[0]!r}?" if near else ""
-            raise ValueError(f"unknown layer {name!r}{hint} Allowed: {', '.join(LAYERS)}")
-    return tuple(names)
+            raise ValueError(f"unknown layer {name!r}{suggestion(name, LAYERS)} Allowed: {', '.join(LAYERS)}")
+        if chosen.count(name) > 1:
+            raise ValueError(f"layer {name!r} is named twice; name each layer once")
+    return chosen
 
 
 class AttitudeConfig(Table):
@@ -90,14 +91,11 @@ class ControlConfig(Table):
 
     def check_thrusters(self, known: Sequence[str]) -> None:
         """Raise ValueError if a share names a thruster that the vehicle does not have."""
-        for law in (self.attitude, self.heading, self.navigation):
-            for key in type(law).model_fields:
-                share = getattr(law, key)
+        for law in ("attitude", "heading", "navigation"):
+            for key, share in getattr(self, law):
                 for name in share if isinstance(share, dict) else ():
                     if name not in known:
-                        near = difflib.get_close_matches(name, known, n=1)
-                        hint = f"; did you mean {near[0]!r}?" if near else ""
                         raise ValueError(
-                            f"{key} names the thruster {name!r}, which the vehicle does not have{hint} "
-                            f"It has: {', '.join(known) or 'none'}"
+                            f"control.{law}.{key} names the thruster {name!r}, which the vehicle does not have"
+                            f"{suggestion(name, known)} It has: {', '.join(known) or 'none; remove the shares'}"
                         )

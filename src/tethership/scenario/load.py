@@ -2,7 +2,6 @@
 
 import copy
 import dataclasses
-import difflib
 import json
 import tomllib
 from collections.abc import Iterable, Mapping
@@ -13,7 +12,7 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from tethership.control import LayeredLaw
-from tethership.errors import ConfigError
+from tethership.errors import ConfigError, suggestion
 from tethership.scenario.build import assemble
 from tethership.scenario.control_schema import check_layers
 from tethership.scenario.laws import build_law
@@ -79,6 +78,8 @@ class Scenario:
             names = control.layers if layers is None else check_layers(layers)
         except ValueError as error:
             raise ConfigError(str(error)) from error
+        if names and not self.config.cables:
+            raise ConfigError(f"layers {', '.join(names)} need a cable, and {self.name} has none; use --layers none")
         chosen = control.model_copy(update={"layers": names, "sas": control.sas if sas is None else sas})
         return build_law(self.config.model_copy(update={"control": chosen}))
 
@@ -103,10 +104,9 @@ def packaged_text(folder: str, name: str) -> str:
     files = _packaged(folder)
     if name in files:
         return files[name].read_text(encoding="utf-8")
-    near = difflib.get_close_matches(name, files, n=1)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
     raise ConfigError(
-        f"no {folder[:-1]} {name!r}{hint} Packaged: {', '.join(sorted(files))}; a file of your own ends in .toml"
+        f"no {folder[:-1]} {name!r}{suggestion(name, files)} Packaged: {', '.join(sorted(files))}; "
+        "a file of your own ends in .toml"
     )
 
 
@@ -155,6 +155,9 @@ def load_scenario(name: str = "docking", changes: Mapping[str, Any] | None = Non
         Not found, not TOML, or a key, unit or value that cannot be.
     """
     document, origin = _read("scenarios", name)
+    if isinstance((changes or {}).get("vehicle"), str):
+        document["vehicle"] = (changes or {})["vehicle"]
+        changes = {key: value for key, value in (changes or {}).items() if key != "vehicle"}
     vehicle = document.get("vehicle")
     if isinstance(vehicle, str):
         base = Path(origin).parent if origin.endswith(".toml") else None
@@ -185,10 +188,16 @@ def change(document: Document, dotted: str, value: Any, origin: str) -> None:
         place, last = _enter(place, last, dotted, origin), ""
     if not isinstance(place, dict):
         raise ConfigError(f"{origin}: {dotted!r} is no value that can be changed")
-    number = isinstance(value, int | float | list | tuple) and not isinstance(value, bool)
-    if number and last not in ("layers", "unknowns"):
+    if _is_number(value) and not any(step.endswith("share") for step in path):
         value = {"value": list(value) if isinstance(value, tuple) else value, "unit": SI_UNIT}
     place[last] = value
+
+
+def _is_number(value: Any) -> bool:
+    """Return whether a value is a number, or a list of numbers or of lists of them."""
+    if isinstance(value, list | tuple):
+        return len(value) > 0 and all(_is_number(item) for item in value)
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _enter(place: Any, step: str, dotted: str, origin: str) -> Any:

@@ -53,6 +53,10 @@ def _dotted(document: Any, location: tuple[int | str, ...], missing: bool) -> st
 def _said(problem: Any) -> str:
     """Return what is wrong with one value."""
     kind = problem["type"]
+    if kind == "missing" and isinstance(problem["loc"][-1], int):
+        return "there are too few numbers in the list"
+    if kind == "tuple_type":
+        return f'it is {problem["input"]!r}; give a list, e.g. ["rewind"]'
     if kind == "missing":
         return "it is missing; add it (`tethership new` writes a complete file to start from)"
     if kind in ("union_tag_not_found", "union_tag_invalid"):

@@ -4,7 +4,6 @@ Depends on: pint for the units, pydantic for where they stand, JAX for tables as
 """
 
 import dataclasses
-import difflib
 import functools
 import math
 from collections.abc import Iterable
@@ -16,8 +15,14 @@ from pydantic import BaseModel as PydanticModel
 from pydantic import ConfigDict, GetCoreSchemaHandler, model_validator
 from pydantic_core import core_schema
 
+from tethership.errors import suggestion
+
 SI_UNIT = "SI"
 """Unit name for a number that is already in the field's SI unit, as an override gives it."""
+
+
+ANGLE_UNITS = ("rad", "radian", "radians", "mrad", "deg", "degree", "degrees", "arcmin", "turn")
+"""Units of plane angles: to pint they are plain numbers, so they are told apart here."""
 
 
 class Table(PydanticModel):
@@ -39,8 +44,7 @@ class Table(PydanticModel):
     def _known_keys(cls, datum: Any) -> Any:
         for key in datum if isinstance(datum, dict) else ():
             if key not in cls.model_fields:
-                near = difflib.get_close_matches(str(key), cls.model_fields, n=1)
-                hint = f"; did you mean {near[0]!r}?" if near else ""
+                hint = suggestion(str(key), cls.model_fields)
                 raise ValueError(f"unknown key {key!r}{hint} Allowed: {', '.join(cls.model_fields)}")
         return datum
 
@@ -67,6 +71,9 @@ def _converted(value: float, unit: str, si_unit: str) -> float:
         raise ValueError(f"the value is {value}, not a finite number")
     if unit in (si_unit, SI_UNIT):
         return float(value)
+    if (si_unit == "rad" and unit not in ANGLE_UNITS) or (si_unit == "1" and unit in ANGLE_UNITS):
+        wanted = "deg or rad" if si_unit == "rad" else "1"
+        raise ValueError(f"the unit is {unit!r}, which is no {si_unit!r}; give {wanted}")
     pint_name = {"1": "dimensionless", "-": "dimensionless"}
     try:
         return float(unit_registry().Quantity(value, pint_name.get(unit, unit)).m_as(pint_name.get(si_unit, si_unit)))

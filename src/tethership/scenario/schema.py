@@ -20,7 +20,7 @@ class StandardAir(Table):
     """ISA troposphere."""
 
     model: Literal["isa"] = "isa"
-    ground_altitude: Annotated[float, Quantity("m", low=-1000.0, high=10_000.0)] = 0.0
+    origin_altitude: Annotated[float, Quantity("m", low=-1000.0, high=10_000.0)] = 0.0
     temperature_offset: Annotated[float, Quantity("K", low=-80.0, high=80.0)] = 0.0
 
 
@@ -90,6 +90,12 @@ class WinchConfig(Table):
     rewind_rate: Speed
     fastest_rate: Speed
 
+    @model_validator(mode="after")
+    def _within(self) -> "WinchConfig":
+        if self.rewind_rate > self.fastest_rate:
+            raise ValueError(f"rewind_rate {self.rewind_rate:g} m/s is beyond fastest_rate {self.fastest_rate:g} m/s")
+        return self
+
 
 class CableConfig(Table):
     """One cable; `tether_point` from the origin of the body axes, `anchor` in ground axes."""
@@ -147,18 +153,18 @@ class StartConfig(Table):
 class StopConfig(Table):
     """What ends a flight."""
 
-    cable_length: Annotated[float, Quantity("m", low=0.0)] = 1.5
+    cable_length: Annotated[float, Quantity("m", positive=True)] = 1.5
     time_limit: Seconds = 200.0
     largest_pitch: Annotated[float, Quantity("rad", positive=True, high=1.55)] = 1.3962634015954636
 
 
 class LimitsConfig(Table):
-    """Tensions to be watched."""
+    """Tensions to be watched; `cable_break` is that of the weakest cable, and needed only where there is none."""
 
     control_threshold: Newtons
     envelope_tear: Newtons
     envelope_tensile: Newtons
-    cable_break: Newtons
+    cable_break: Newtons | None = None
 
 
 class ScenarioConfig(Table):
@@ -186,7 +192,22 @@ class ScenarioConfig(Table):
         names = [cable.name for cable in self.cables]
         if len(set(names)) != len(names):
             raise ValueError("two cables have the same name; every name must be its own")
+        weakest = min((cable.breaking_force for cable in self.cables), default=None)
+        given = self.limits.cable_break
+        if weakest is None and given is None:
+            raise ValueError("limits.cable_break is missing, and there is no cable to take it from")
+        if weakest is not None and given is not None and given != weakest:
+            raise ValueError(
+                f"limits.cable_break {given:g} N is not the breaking_force {weakest:g} N; leave it out of limits"
+            )
         self.control.check_thrusters([t.name for t in self.vehicle.thrusters])
         if not self.cables and set(self.control.layers) & {"rewind", "heading", "navigation"}:
             raise ValueError(f"layers {list(self.control.layers)} need a cable, and there is none")
         return self
+
+    def watched_tensions(self) -> list[float]:
+        """Return the four tensions that are watched [N]: control threshold, tear, envelope tensile, cable break."""
+        limits = self.limits
+        weakest = min((cable.breaking_force for cable in self.cables), default=limits.cable_break)
+        assert weakest is not None  # validated above
+        return [limits.control_threshold, limits.envelope_tear, limits.envelope_tensile, weakest]

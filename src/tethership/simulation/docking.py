@@ -1,6 +1,5 @@
 """The docking manoeuvre: from a trimmed point to a flight with its full input. Depends on: simulation, scenario."""
 
-import json
 import platform
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -18,7 +17,7 @@ from tethership.control import AbstractLaw
 from tethership.errors import ConfigError, SolveError
 from tethership.results import store
 from tethership.scenario import Scenario, SolverConfig, read_solver
-from tethership.scenario.load import from_document, validated
+from tethership.scenario.load import from_document
 from tethership.simulation.closed_loop import ClosedLoop
 from tethership.simulation.events import StopConditions
 from tethership.simulation.flight import Flight, Progress, fly
@@ -133,6 +132,9 @@ def dock(
         A layer is not known, or the start is over before it begins.
     """
     config = read_solver(solver) if isinstance(solver, str) else solver
+    known = {"attitude", "rewind", "heading", "navigation"} & set(own_laws or {})
+    if known:
+        raise ConfigError(f"a law of one's own is named {known.pop()!r}, as one of the package; give it another name")
     names = scenario.layers if layers is None else tuple(layers)
     active = scenario.config.control.sas if sas is None else sas
     law = scenario.law(names, active).joined(own_laws or {})
@@ -146,10 +148,11 @@ def dock(
     attributes = {
         "outcome": flown.outcome.name,
         "steps": flown.steps,
-        "layers": [*names, *(own_laws or {})],
+        "layers": list(names),
+        "own_laws": list(own_laws or {}),
         "sas": active,
         "formulation": scenario.formulation,
-        "limits": [value for _, value in scenario.config.limits],
+        "limits": scenario.config.watched_tensions(),
         "scenario_name": scenario.name,
         "scenario": scenario.document,
         "solver": config.model_dump(mode="json"),
@@ -218,13 +221,11 @@ def fly_again(path: str | Path, progress: Progress | None = None) -> tuple[Scena
     """
     stored = Flight.load(path).attributes
     scenario = from_document(stored["scenario"], stored["scenario_name"])
-    if set(stored["layers"]) - {"rewind", "heading", "navigation"}:
-        raise ConfigError(f"{path} was flown with a law of one's own: {json.dumps(stored['layers'])}")
-    solver = {
-        key: {"value": value, "unit": "SI"} if key.endswith(("_step", "_interval")) else value
-        for key, value in stored["solver"].items()
-    }
-    config = validated(SolverConfig, solver, str(path))
+    if stored["own_laws"]:
+        raise ConfigError(
+            f"{path} was flown with a law of one's own, which no file holds: {', '.join(stored['own_laws'])}"
+        )
+    config = SolverConfig.model_construct(**stored["solver"])  # as it was validated when it was flown
     start = _StoredStart(stored["trim"])
     return scenario, dock(scenario, start, stored["layers"], stored["sas"], config, progress)
 

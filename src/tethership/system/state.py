@@ -20,7 +20,7 @@ class State(eqx.Module):
     attitude : Float[Array, "3"]
         Euler angles φ, θ, ψ, 3-2-1 [rad].
     position : Float[Array, "3"]
-        x_P = (N, E, D), ground axes, origin at the first anchor [m].
+        x_P = (N, E, D), ground axes [m]; the origin is the first anchor unless the scenario puts that elsewhere.
     """
 
     velocity: Float[Array, "3"]

@@ -11,7 +11,7 @@ from tethership.physics.cable.law import AbstractTensionLaw, CableForce, regular
 
 
 class ElasticCatenary(AbstractTensionLaw):
-    """Tension law `elastic_catenary`.
+    """Tension law of the `consistent` formulation.
 
     Attributes
     ----------

@@ -18,7 +18,7 @@ from tethership.physics.cable.law import AbstractTensionLaw, CableForce, regular
 
 
 class PublishedTension(AbstractTensionLaw):
-    """Tension law `published`.
+    """Tension law of the `published` formulation.
 
     Attributes
     ----------
