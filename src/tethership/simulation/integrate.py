@@ -139,18 +139,18 @@ def _traced(loop: ClosedLoop, stop: StopConditions, time: Array, vector: Array) 
     makes a step a quarter cheaper.
     """
 
-    def apart(function: Field) -> Field:
-        traced = eqx.filter_closure_convert(function, time, vector)
+    def apart(function: Field, otherwise: Field) -> Field:
+        converted = eqx.filter_closure_convert(function, time, vector)
 
-        def call(t: Array, y: Array) -> Array:
-            shape = jax.eval_shape(traced, t, y)
-            return jax.lax.cond(
-                jnp.isfinite(t), lambda: traced(t, y), lambda: jnp.full(shape.shape, jnp.nan, shape.dtype)
-            )
+        def traced(t: Array, y: Array) -> Array:  # one function object, so that `cond` traces it once too
+            return converted(t, y)
 
-        return call
+        return lambda t, y: jax.lax.cond(jnp.isfinite(t), traced, otherwise, t, y)
 
-    return apart(loop.vector_field), apart(lambda t, y: stop.least(loop, t, y))
+    return (
+        apart(loop.vector_field, lambda t, y: jnp.full_like(y, jnp.nan)),
+        apart(lambda t, y: stop.least(loop, t, y), lambda t, y: jnp.full_like(t, jnp.nan)),
+    )
 
 
 @eqx.filter_jit
