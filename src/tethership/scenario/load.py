@@ -14,16 +14,16 @@ from pydantic import ValidationError
 from tethership.control import LayeredLaw
 from tethership.errors import ConfigError, suggestion
 from tethership.scenario.build import assemble
+from tethership.scenario.changes import Document, change
 from tethership.scenario.control_schema import check_layers
 from tethership.scenario.laws import build_law
 from tethership.scenario.messages import first_problem
-from tethership.scenario.quantity import SI_UNIT, Table
+from tethership.scenario.quantity import Table
 from tethership.scenario.schema import ScenarioConfig
 from tethership.scenario.solver import SolverConfig
 from tethership.scenario.vehicle_schema import VehicleConfig
 from tethership.system import TetheredAirship
 
-Document = dict[str, Any]
 ModelType = TypeVar("ModelType", bound=Table)
 
 
@@ -176,42 +176,6 @@ def from_document(document: Document, origin: str, changes: Mapping[str, Any] | 
         change(document, key, value, origin)
     config = validated(ScenarioConfig, document, origin)
     return Scenario(origin, config, document, assemble(config))
-
-
-def change(document: Document, dotted: str, value: Any, origin: str) -> None:
-    """Set one value of a document in place, by its dotted name."""
-    *path, last = dotted.split(".")
-    place: Any = document
-    for step in path:
-        place = _enter(place, step, dotted, origin)
-    if isinstance(place, list):
-        place, last = _enter(place, last, dotted, origin), ""
-    if not isinstance(place, dict):
-        raise ConfigError(f"{origin}: {dotted!r} is no value that can be changed")
-    if _is_number(value) and not any(step.endswith("share") for step in path):
-        value = {"value": list(value) if isinstance(value, tuple) else value, "unit": SI_UNIT}
-    place[last] = value
-
-
-def _is_number(value: Any) -> bool:
-    """Return whether a value is a number, or a list of numbers or of lists of them."""
-    if isinstance(value, list | tuple):
-        return len(value) > 0 and all(_is_number(item) for item in value)
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def _enter(place: Any, step: str, dotted: str, origin: str) -> Any:
-    """Return the table or list item called `step`."""
-    if isinstance(place, list):
-        named = [item for item in place if isinstance(item, dict) and item.get("name") == step]
-        if named:
-            return named[0]
-        if step.isdigit() and int(step) < len(place):
-            return place[int(step)]
-        raise ConfigError(f"{origin}: {dotted!r}: no item {step!r} in a list of {len(place)}")
-    if isinstance(place, dict):
-        return place.setdefault(step, {})
-    raise ConfigError(f"{origin}: {dotted!r}: {step!r} is inside a value, not a table")
 
 
 def read_solver(name: str = "adaptive") -> SolverConfig:
