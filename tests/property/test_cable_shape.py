@@ -71,7 +71,7 @@ def test_curve_starts_at_the_anchor_and_ends_at_the_ship(name, cables, cable_kin
     cases = cables(cable_kind, COUNT, seed=21)
     _, points, _ = traced(name, cases, _random_fractions(COUNT, 21))
     assert (points[:, 0] == 0.0).all()
-    # the figure that DESIGN section 6 promises
+    # the figure that benchmarks/README.md claims
     assert (norm(points[:, -1] - cases.span) <= 1e-9 * cases.length).all()
 
 

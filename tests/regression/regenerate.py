@@ -12,7 +12,7 @@ import tethership as ts
 REFERENCE = Path(__file__).parent / "flights.json"
 
 FIRST_GUESS_FINS = {f"vehicle.fins.{i}.efficiency": 12.0 / (2.88 * 5.73) for i in range(4)}
-"""S C_Nα η_f = 12 m² per fin: the first guess for `published` (PHYSICS of the paper leaves the fins open)."""
+"""S C_Nα η_f = 12 m² per fin: the first guess for `published` (the paper leaves the fins open)."""
 
 CASES = {
     "consistent 6 rewind": ({"wind.speed": 6.0}, ("rewind",)),
