@@ -1,4 +1,4 @@
-"""What must hold of the equations of motion, and by how much the published form misses it (the physics notes section 2).
+"""What must hold of the equations of motion, and by how much the published form misses it (the notes section 2).
 
 Truths: Galilean invariance, conservation of energy and impulse in ideal flow, a neutrally buoyant ship in a gust,
 mirror symmetry, independence of the reference point P. If `consistent` failed one of these, the default model would
@@ -345,7 +345,7 @@ def gusted():
 
 def test_neutral_ship_follows_the_air(gusted):
     velocity, attitude = gusted["consistent"]
-    # the physics notes found 8e-10 with its integrator. Runge–Kutta at 0.005 s, steps on the gusts' corners: measured
+    # the notes found 8e-10 with its integrator. Runge–Kutta at 0.005 s, steps on the gusts' corners: measured
     # 3e-12 m/s, 2e-12 rad; the bound is that of (0.005 · 2)⁴/12.
     assert velocity < 8e-10
     assert attitude < 8e-10

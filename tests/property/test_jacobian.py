@@ -305,7 +305,7 @@ def test_slopes_at_trim(scenarios, loops, form):
 
 @pytest.mark.parametrize("form", BOTH)
 def test_plumb_cable_pulls_straight(corners, form):
-    """Its force there is the limit ½(L + y₃)l of the physics notes section 7, without a sideways part (no wind)."""
+    """Its force there is the limit ½(L + y₃)l of the notes section 7, without a sideways part (no wind)."""
     named, still = corners
     plant = still[form]
     states_of = eqx.filter_jit(

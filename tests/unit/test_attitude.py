@@ -1,6 +1,6 @@
 """SAS/attitude law: Eq. 40 written out by hand, and that it damps the ship it is meant for.
 
-Truth: the corrected form in the physics notes section 11 with the gains of Table A.1, and the arms of Table 1. If this
+Truth: the corrected form in the notes section 11 with the gains of Table A.1, and the arms of Table 1. If this
 failed, the ship would be driven away from level, or (with the printed sign of the ratio of arms) not damped at all.
 """
 

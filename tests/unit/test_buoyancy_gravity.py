@@ -36,7 +36,7 @@ def statics(attitude, offset):
 
 def test_displaced_air_at_sea_level_weighs_135_kg():
     force = buoyancy.wrench(jnp.asarray(SEA_LEVEL_DENSITY), DOWN).force
-    # the physics notes section 5 prints 135.1 kg: half of its last digit.
+    # the notes section 5 prints 135.1 kg: half of its last digit.
     assert float(-force[2]) / STANDARD_GRAVITY == pytest.approx(135.1, abs=0.05)
 
 

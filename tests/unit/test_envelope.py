@@ -1,4 +1,4 @@
-"""Hull loads, held against the per-strip formulas of the physics notes added up with 200 000 trapezia.
+"""Hull loads, held against the per-strip formulas of the notes added up with 200 000 trapezia.
 
 Truth: the loads per unit length of sections 2 and 3, summed by numpy; d'Alembert, Munk and the symmetries of a
 body of revolution. If this failed, the closed forms of the slice integrals (or their signs, or the part of the

@@ -1,6 +1,6 @@
 """Fins: one fin worked by hand, then any number at any roll angle.
 
-Truth: the formula of the physics notes section 4 evaluated by hand for a single fin, and symmetry. If this failed, the
+Truth: the formula of the notes section 4 evaluated by hand for a single fin, and symmetry. If this failed, the
 tail would destabilise instead of stabilise, or a deflection would turn the ship the wrong way.
 """
 

@@ -30,7 +30,7 @@ def exact_moment(power, origin, start, end):
 
 
 def test_volume_centre_and_largest_radius():
-    # the physics notes section 3 prints 110.29 m³, 6.970 m, 1.992 m: half of each last digit.
+    # the notes section 3 prints 110.29 m³, 6.970 m, 1.992 m: half of each last digit.
     assert float(hull.volume()) == pytest.approx(110.29, abs=0.005)
     assert float(hull.centre()) == pytest.approx(6.970, abs=0.0005)
     radii = np.asarray(hull.radius(jnp.linspace(0.0, LENGTH, 100_001)))

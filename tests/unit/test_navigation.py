@@ -1,6 +1,6 @@
 """Navigation law: Eq. 43 by hand with the text's index sets and the damping sign of the speed term.
 
-Truth: the physics notes section 11 with the gains of Table A.4. If this failed, the ship would fly away from the anchor,
+Truth: the notes section 11 with the gains of Table A.4. If this failed, the ship would fly away from the anchor,
 climb from it, or (with the printed plus) be driven ever faster.
 """
 

@@ -71,7 +71,7 @@ def test_printed_table(row):
 
 def test_paper_table_2():
     """At the envelope's 16.0/3.98 = 4.02 the first two are the paper's; its k′ = 0.69 belongs to 4.87."""
-    # the physics notes section 2 prints four digits.
+    # the notes section 2 prints four digits.
     np.testing.assert_allclose(factors(4.02), [0.0810, 0.8606, 0.6102], atol=5e-5)
     np.testing.assert_allclose(factors(4.02)[:2], [0.08, 0.86], atol=5e-3)
     assert factors(4.87)[2] == pytest.approx(0.69, abs=5e-4)

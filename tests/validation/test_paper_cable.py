@@ -4,7 +4,7 @@ Verifies: the load on the cable, both tension laws at the docking geometry, the 
 scenario.
 Air: ISA at the cable's mid-point. Vehicle: Lotte's nose cable, 20 m, 80 g/m, 10 mm, EA = 69 760 N, at e =
 0.8, 45 degrees.
-Source: the physics notes section 7; Table 5 prints 14 N for the first, at 6 m/s. Eqs. 20, 21 and 24 are misprinted
+Source: the notes section 7; Table 5 prints 14 N for the first, at 6 m/s. Eqs. 20, 21 and 24 are misprinted
 and are used as corrected there: L_t/y_2 in Eq. 20, both terms of Eq. 21 over 2 (cosh - 1), and l.c3 = -|l| in
 Eq. 24.
 If this fails, no docking figure or table of the paper can be reproduced.

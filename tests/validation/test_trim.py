@@ -1,6 +1,6 @@
 """Trim: the paper's static equilibrium and those of other tethered and free ships, by one call.
 
-Sources: Riboldi et al., section 3 (tether point at e₀ = 0.8, 45° up, level, at rest) and the figures of the physics notes
+Sources: Riboldi et al., section 3 (tether point at e₀ = 0.8, 45° up, level, at rest) and the figures of the notes
 sections 7 and 13 (L9); statics worked by hand for hover and for an aerostat in still air. If this failed, every
 docking flight would start from a place where the ship does not rest, or a place that does not exist would be
 returned in silence.
@@ -79,7 +79,7 @@ def test_tether_point_is_at_eight_tenths_of_the_cable(trimmed, form):
 @pytest.mark.parametrize("form", BOTH)
 @pytest.mark.parametrize(("wind", "tension"), [(6.0, 14.18), (9.0, 15.74), (12.0, 18.06)])
 def test_first_tension_of_table_5(form, wind, tension):
-    """the physics notes section 7; the paper's Table 5 prints 14 N at 6 m/s."""
+    """the notes section 7; the paper's Table 5 prints 14 N at 6 m/s."""
     point = ts.trim(docking(formulation=form, wind__speed=wind))
     # Printed to 0.01 N at sea-level density; at 5.7 m it is 5e-4 less of the wind's part (0.002 N at 12 m/s), and
     # the elastic law differs from the inextensible one by the stretch of 1e-4. Measured 14.174 and 14.176.
@@ -103,7 +103,7 @@ def test_throttles_have_the_least_norm(trimmed, form):
     # Throttles of 0.1: rounding of 1.3e3 N over 120 N, times the condition of the matrix (9).
     np.testing.assert_allclose(np.asarray(point.command.throttle), least, rtol=0, atol=1e-10)
     np.testing.assert_array_equal(np.asarray(point.command.deflection), fins)
-    # As symmetric as the ship: #3 = #4, #5 = #6 — and #2 is reversed, as the physics notes section 6 says it must be.
+    # As symmetric as the ship: #3 = #4, #5 = #6 — and #2 is reversed, as the notes section 6 says it must be.
     assert point.command.throttle[2] == pytest.approx(float(point.command.throttle[3]), abs=1e-12)
     assert point.command.throttle[4] == pytest.approx(float(point.command.throttle[5]), abs=1e-12)
     assert float(point.command.throttle[1]) < 0
