@@ -221,9 +221,7 @@ def test_level_ship_points_north_with_its_fins_aft(shape):
     outlines = ship_outlines(shape, ORIGIN, np.eye(3), FROM_EAST)
     hull = max(outlines, key=len)
     assert len(outlines) == 5
-    assert hull[:, 0].max() == pytest.approx(
-        6.9702, abs=1e-3
-    )  # nose; the notes and the paper's tether point 6.97 m
+    assert hull[:, 0].max() == pytest.approx(6.9702, abs=1e-3)  # nose; the notes and the paper's tether point 6.97 m
     assert hull[:, 0].min() == pytest.approx(6.9702 - 16.0, abs=1e-3)
     assert hull[:, 1].max() == pytest.approx(0.5 * 3.98432, rel=2e-3)
     fins = np.concatenate([outline for outline in outlines if outline is not hull])
