@@ -98,6 +98,13 @@ def test_set_takes_units_shares_and_empty_lists(run, tmp_path):
     assert "would be overwritten; choose another folder with --out" in err
 
 
+@pytest.mark.parametrize(("text", "speed"), [("1.2e1", 12.0), ("12", 12.0), ("12 m/s", 12.0), ("36km/hour", 10.0)])
+def test_set_reads_numbers_with_and_without_units(run, text, speed):
+    code, out, _ = run("trim", "--set", f"wind.speed={text}", "--json")
+    assert code == 0
+    assert json.loads(out)["wind"] == pytest.approx(speed, rel=1e-15)
+
+
 def test_new_in_a_folder_can_be_flown(run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert run("new", "sub/mine.toml")[0] == 0
@@ -209,6 +216,7 @@ WRONG = {
     ("dock", "--layers", "rewnd"): "unknown layer 'rewnd'; did you mean 'rewind'?",
     ("dock", "--formulation", "best"): "formulation: it is 'best'",
     ("dock", "--set", "wind.speed"): "--set 'wind.speed' is no change; write --set key=value",
+    ("dock", "--set", "wind.speed=1.2.3deg"): "wind.speed: it is '1.2.3deg'; a number needs its unit",
     ("dock", "--set", "wind.spd=3"): "unknown key 'spd'; did you mean 'speed'?",
     ("dock", "--out", "/dev/null/x"): "choose another folder with --out",
     ("dock", "--solver", "fast"): "no solver 'fast'",

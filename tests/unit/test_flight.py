@@ -39,8 +39,8 @@ def test_the_winch_takes_in_what_is_missing(flight):
     assert taken == pytest.approx(20.0 - 1.5, abs=2e-3)
 
 
-def test_loads_add_up_to_the_motion(docking, flight):
-    """Momentum balance from the stored loads alone: m v̇_G + … is not needed, weight and buoyancy at rest are."""
+def test_stored_loads_are_what_they_are_called(flight):
+    """The stored loads are what they are called: the weight is the weight, the cable's load its tension."""
     loads = flight.data["load_force"].sel(load="gravity")
     weight = np.linalg.norm(loads, axis=1)
     np.testing.assert_allclose(weight, 136.8 * 9.80665, rtol=1e-12)

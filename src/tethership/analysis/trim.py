@@ -6,7 +6,6 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
@@ -93,7 +92,7 @@ def _search_start(
     if turned:
         base[8] = into_wind
     place_fixed(base)
-    base[9:12] = start_position(_arrays(config), plant, jnp.asarray(base[6:9]))
+    base[9:12] = start_position(config.as_arrays(), plant, jnp.asarray(base[6:9]))
     if turned and plant.cables and not hold:
         base[9:11] = _downwind(base[9:11], np.asarray(plant.cables[0].anchor)[:2], into_wind)
     place_fixed(base)
@@ -104,11 +103,6 @@ def _downwind(place: np.ndarray, anchor: np.ndarray, from_direction: float) -> n
     """Return a horizontal place (north, east) [m] turned about the anchor until it is downwind of it."""
     distance = np.linalg.norm(place - anchor)
     return anchor - distance * np.array([np.cos(from_direction), np.sin(from_direction)])
-
-
-def _arrays(config: TrimConfig) -> TrimConfig:
-    """Return the settings with numbers as arrays, which do not recompile when they change."""
-    return jax.tree.map(lambda leaf: np.asarray(leaf) if isinstance(leaf, float) else leaf, config)
 
 
 def trim(

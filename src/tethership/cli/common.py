@@ -1,4 +1,4 @@
-"""What all commands share: the scenario argument, common flags, JSON and stages. Depends on: scenario, rich."""
+"""What all commands share: the scenario argument, common flags, JSON and stages. Depends on: scenario, typer."""
 
 import contextlib
 import json
@@ -15,7 +15,7 @@ import typer
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario, load_scenario
 
-NUMBER_WITH_UNIT = re.compile(r"(?P<number>[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(?P<unit>[A-Za-z°][^\s].*|m|s|N|K)")
+NUMBER_WITH_UNIT = re.compile(r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>[A-Za-z].*)")
 """A number with a unit, as in `270deg` or `12 m/s`."""
 
 WRONG_INPUT = 2
@@ -69,17 +69,17 @@ def chosen_scenario(name: str, wind: float | None, formulation: str | None, chan
 
 
 def _change(text: str) -> tuple[str, Any]:
-    """Return key and value of `key=value`; a number with a unit, JSON, or else a word."""
+    """Return key and value of `key=value`; JSON, a number with a unit, or else a word."""
     key, equals, value = text.partition("=")
     if not equals or not key:
         raise ConfigError(f"--set {text!r} is no change; write --set key=value, e.g. --set wind.speed=9")
-    with_unit = NUMBER_WITH_UNIT.fullmatch(value)
-    if with_unit is not None:
-        return key, {"value": float(with_unit["number"]), "unit": with_unit["unit"]}
     try:
         return key, json.loads(value)
     except json.JSONDecodeError:
+        with_unit = NUMBER_WITH_UNIT.fullmatch(value)
+    if with_unit is None:
         return key, value
+    return key, {"value": float(with_unit["number"]), "unit": with_unit["unit"]}
 
 
 def json_text(result: dict[str, Any]) -> str:

@@ -4,9 +4,7 @@ Everything is written with jax.numpy, so that a plant can be differentiated with
 """
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Float
 
 from tethership.physics.atmosphere import AbstractAtmosphere, ConstantAtmosphere, StandardAtmosphere
@@ -124,6 +122,5 @@ def assemble(config: ScenarioConfig, reference_point: Float[Array, "3"] | None =
     reference_point : Float[Array, "3"], optional
         As in `build_ship`.
     """
-    numbers = jax.tree.map(lambda leaf: np.asarray(leaf) if isinstance(leaf, float) else leaf, config)
     shift = jnp.zeros(3) if reference_point is None else jnp.asarray(reference_point, dtype=float)
-    return _compiled(numbers, shift)
+    return _compiled(config.as_arrays(), shift)

@@ -10,6 +10,7 @@ from collections.abc import Iterable
 from typing import Any, Self
 
 import jax
+import numpy as np
 import pint
 from pydantic import BaseModel as PydanticModel
 from pydantic import ConfigDict, GetCoreSchemaHandler, model_validator
@@ -47,6 +48,10 @@ class Table(PydanticModel):
                 hint = suggestion(str(key), cls.model_fields)
                 raise ValueError(f"unknown key {key!r}{hint} Allowed: {', '.join(cls.model_fields)}")
         return datum
+
+    def as_arrays(self) -> Self:
+        """Return the table with its numbers as arrays: a compiled function then serves every value of them."""
+        return jax.tree.map(lambda leaf: np.asarray(leaf) if isinstance(leaf, float) else leaf, self)
 
     def _flatten(self) -> tuple[list[tuple[Any, Any]], tuple[str, ...]]:
         names = tuple(type(self).model_fields)
