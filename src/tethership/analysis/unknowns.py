@@ -76,11 +76,10 @@ def find_unknowns(
     return Unknowns(tuple(index), jnp.asarray([scales[i] for i in index]), jnp.asarray([efforts[i] for i in index]))
 
 
-def place_values(fixed: dict[str, float], thrusters: list[str], fins: list[str], base: np.ndarray) -> None:
-    """Put values [SI, rad] by name into all quantities, in place; raises ConfigError for a name that is none."""
+def find_places(names: tuple[str, ...], thrusters: list[str], fins: list[str]) -> tuple[int, ...]:
+    """Return the places of quantities by name; raises ConfigError for a name that is none."""
     every = [*QUANTITIES, *thrusters, *fins]
-    for name, value in fixed.items():
-        base[_place(name, every, [])] = value
+    return tuple(_place(name, every, []) for name in names)
 
 
 def _place(name: str, every: list[str], groups: list[str]) -> int:

@@ -1,4 +1,6 @@
-"""A single "1 − cos" gust, uniform in space. Depends on: nothing.
+"""Changes of the wind in time, uniform in space: a "1 − cos" gust, and a small change for a linear model.
+
+Depends on: nothing.
 
 References
 ----------
@@ -6,12 +8,26 @@ Section 4.1 of Riboldi et al. (side gust of one third of the wind, period 5 s, a
 is that of EASA CS-23/CS-25.341: ½A (1 − cos 2π(t − t₀)/T), zero before and after.
 """
 
+import abc
+
 import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 
-class CosineGust(eqx.Module):
+class AbstractGust(eqx.Module):
+    """A velocity added to the wind, the same everywhere."""
+
+    @abc.abstractmethod
+    def velocity(self, time: Float[Array, ""]) -> Float[Array, "3"]:
+        """Return the velocity added to the wind [m/s], ground axes, at time t [s]."""
+
+    @abc.abstractmethod
+    def corners(self) -> Float[Array, "n"]:
+        """Return the times [s] at which it is not smooth, for the integrator to step on."""
+
+
+class CosineGust(AbstractGust):
     """One pulse in a fixed direction.
 
     Attributes
@@ -36,3 +52,26 @@ class CosineGust(eqx.Module):
     def corners(self) -> Float[Array, "2"]:
         """Return the two times [s] at which its second derivative jumps, for the integrator to step on."""
         return jnp.stack([self.start, self.start + self.period])
+
+
+class WindChange(AbstractGust):
+    """A change of the wind and of its rate at t = 0: the wind as an input of a linear model.
+
+    Attributes
+    ----------
+    change : Float[Array, "3"]
+        Added velocity of the air Δv_w at t = 0, ground axes [m/s].
+    rate : Float[Array, "3"]
+        Its rate dv_w/dt, ground axes [m/s²].
+    """
+
+    change: Float[Array, "3"]
+    rate: Float[Array, "3"]
+
+    def velocity(self, time: Float[Array, ""]) -> Float[Array, "3"]:
+        """Return Δv_w + t dv_w/dt [m/s], ground axes, at time t [s]."""
+        return self.change + time * self.rate
+
+    def corners(self) -> Float[Array, "0"]:
+        """Return no times [s]: it is smooth."""
+        return jnp.zeros(0)

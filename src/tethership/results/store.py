@@ -85,13 +85,13 @@ def write(dataset: xr.Dataset, path: Path) -> None:
         ) from error
 
 
-def read(path: Path) -> xr.Dataset:
-    """Return the dataset of a flight file.
+def read(path: Path, kind: str = KIND, layout: int = FORMAT) -> xr.Dataset:
+    """Return the dataset of a file of this package: a flight, or another kind that is asked for.
 
     Raises
     ------
     ConfigError
-        There is no such file, it is no flight of this package, or it has the layout of another version.
+        There is no such file, it is of another kind, or it has the layout of another version.
     """
     if not path.is_file():
         raise ConfigError(f"cannot read {path}: no such file")
@@ -100,12 +100,12 @@ def read(path: Path) -> xr.Dataset:
             dataset = opened.load()
     except Exception as error:
         raise ConfigError(f"{path} is not a readable netCDF file (truncated, or another kind of file)") from error
-    if dataset.attrs.get("kind") != KIND:
-        raise ConfigError(f"{path} is a netCDF file but no flight of tethership")
-    if int(dataset.attrs.get("format", -1)) != FORMAT:
+    if dataset.attrs.get("kind") != kind:
+        raise ConfigError(f"{path} is a netCDF file but no {kind.removeprefix('tethership ')} of tethership")
+    if int(dataset.attrs.get("format", -1)) != layout:
         raise ConfigError(
             f"{path} has layout {dataset.attrs.get('format')} of tethership "
-            f"{dataset.attrs.get('tethership_version')}; this version ({__version__}) reads layout {FORMAT}: "
-            "fly it again with the version that wrote it"
+            f"{dataset.attrs.get('tethership_version')}; this version ({__version__}) reads layout {layout}: "
+            f"{'fly' if kind == KIND else 'make'} it again with the version that wrote it"
         )
     return dataset

@@ -7,7 +7,7 @@ from jaxtyping import Array, Float
 
 from tethership.physics.atmosphere import AbstractAtmosphere
 from tethership.physics.ground_effect import GroundEffect
-from tethership.physics.gust import CosineGust
+from tethership.physics.gust import AbstractGust
 from tethership.physics.wind import AbstractWind
 
 
@@ -43,7 +43,7 @@ class Environment(eqx.Module):
         Gives ρ from altitude.
     wind : AbstractWind
         Steady wind.
-    gusts : tuple of CosineGust
+    gusts : tuple of AbstractGust
         Added to the wind.
     ground_effect : GroundEffect or None
         Extra vertical wind, or nothing.
@@ -54,7 +54,7 @@ class Environment(eqx.Module):
     gravity: Float[Array, "3"]
     atmosphere: AbstractAtmosphere
     wind: AbstractWind
-    gusts: tuple[CosineGust, ...]
+    gusts: tuple[AbstractGust, ...]
     ground_effect: GroundEffect | None
     ground: Float[Array, ""]
 

@@ -7,6 +7,9 @@ from jaxtyping import Array, Float
 STATE_NAMES = ("u", "v", "w", "p", "q", "r", "phi", "theta", "psi", "north", "east", "down")
 """Names of the twelve states, in the order of the vector."""
 
+STATE_UNITS = ("m/s", "m/s", "m/s", "rad/s", "rad/s", "rad/s", "rad", "rad", "rad", "m", "m", "m")
+"""Their SI units."""
+
 
 class State(eqx.Module):
     """Motion of the body frame, origin P.

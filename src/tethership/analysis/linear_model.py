@@ -1,0 +1,202 @@
+"""The linear model of a ship about a point: labelled matrices, reduced models, python-control, files.
+
+Depends on: results, numpy; python-control when asked for.
+"""
+
+import dataclasses
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from tethership._version import __version__
+from tethership.errors import ConfigError, suggestion
+from tethership.results import store
+
+if TYPE_CHECKING:
+    import control
+
+    from tethership.analysis.modes import Modes
+
+KIND = "tethership linear model"
+"""What a file of a linear model says it is."""
+
+FORMAT = 1
+"""Version of the layout of these files."""
+
+LONGITUDINAL = ("u", "w", "q", "theta", "north", "down")
+LATERAL = ("v", "p", "r", "phi", "psi", "east")
+POSITION = ("north", "east", "down")
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class LinearModel:
+    """Δṡ = A Δs + U Δδ about a point.
+
+    Attributes
+    ----------
+    A : ndarray
+        State matrix [state unit per second per state unit], shape (n, n).
+    U : ndarray
+        Input matrix, shape (n, inputs).
+    states, inputs : tuple of str
+        Names in the order of the matrices.
+    state_units, input_units : tuple of str
+        Their SI units.
+    state_values, input_values : ndarray
+        Where the model holds.
+    comparable : ndarray
+        Matrix to comparable coordinates, shape (n, n): velocity relative to the air, rates and angles times half the
+        hull's length, so that every entry is in m/s or m at the hull's end.
+    attributes : dict
+        Formulation, outcome of the trim, the scenario as read.
+    """
+
+    A: np.ndarray
+    U: np.ndarray
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    state_units: tuple[str, ...]
+    input_units: tuple[str, ...]
+    state_values: np.ndarray
+    input_values: np.ndarray
+    comparable: np.ndarray
+    attributes: dict[str, Any]
+
+    def modes(self) -> "Modes":
+        """Return the modes: eigenvalues, names, participation (see `modes.find_modes`)."""
+        from tethership.analysis.modes import find_modes
+
+        return find_modes(self)
+
+    def select(self, states: Sequence[str] | None = None, inputs: Sequence[str] | None = None) -> "LinearModel":
+        """Return the model of some states and inputs, the others being held where they are.
+
+        Raises
+        ------
+        ConfigError
+            A name is not in the model.
+        """
+        rows = _places(self.states if states is None else states, self.states, "state")
+        columns = _places(self.inputs if inputs is None else inputs, self.inputs, "input")
+        return LinearModel(
+            self.A[np.ix_(rows, rows)],
+            self.U[np.ix_(rows, columns)],
+            tuple(self.states[i] for i in rows),
+            tuple(self.inputs[i] for i in columns),
+            tuple(self.state_units[i] for i in rows),
+            tuple(self.input_units[i] for i in columns),
+            self.state_values[rows],
+            self.input_values[columns],
+            self.comparable[np.ix_(rows, rows)],
+            self.attributes,
+        )
+
+    def without_position(self) -> "LinearModel":
+        """Return the model of nine states usual for free airships: position is held."""
+        return self.select([name for name in self.states if name not in POSITION])
+
+    def longitudinal(self) -> "LinearModel":
+        """Return the model of u, w, q, θ, north, down (those that are there); see `_part` for errors."""
+        return self._part(LONGITUDINAL)
+
+    def lateral(self) -> "LinearModel":
+        """Return the model of v, p, r, φ, ψ, east (those that are there); see `_part` for errors."""
+        return self._part(LATERAL)
+
+    def coupling(self, states: Sequence[str]) -> float:
+        """Return how strongly some states are coupled with the others: largest entry between them, comparable
+        coordinates, over the largest of A [-]."""
+        inside = np.isin(self.states, list(states))
+        matrix = self.comparable_matrix()
+        between = max(np.abs(matrix[inside][:, ~inside]).max(initial=0.0), np.abs(matrix[~inside][:, inside]).max(initial=0.0))
+        return float(between / max(np.abs(matrix).max(), 1e-300))
+
+    def comparable_matrix(self) -> np.ndarray:
+        """Return A in comparable coordinates [1/s]."""
+        return self.comparable @ self.A @ np.linalg.inv(self.comparable)
+
+    def _part(self, names: Sequence[str]) -> "LinearModel":
+        """Return the model of the named states that are there.
+
+        Raises
+        ------
+        ConfigError
+            They are coupled with the others, so that this would be another ship.
+        """
+        kept = [name for name in self.states if name in names]
+        strength = self.coupling(kept)
+        if strength > 1e-6:
+            raise ConfigError(
+                f"the point is not symmetric: {', '.join(kept)} are coupled with the other states ({strength:.1e} of the "
+                "largest entry of A); use the whole model, or select() if the coupling may be neglected"
+            )
+        return self.select(kept)
+
+    def to_control(self) -> "control.StateSpace":
+        """Return a python-control StateSpace with named states, inputs and outputs; all states are outputs."""
+        import control
+
+        count, width = len(self.states), len(self.inputs)
+        return control.ss(
+            self.A,
+            self.U,
+            np.eye(count),
+            np.zeros((count, width)),
+            states=list(self.states),
+            inputs=list(self.inputs),
+            outputs=list(self.states),
+            name="airship",
+        )
+
+    def to_dataset(self) -> xr.Dataset:
+        """Return the model as a labelled dataset."""
+        other = list(self.states)
+        variables = {
+            "A": (("state", "of_state"), self.A, {"long_name": "state matrix"}),
+            "U": (("state", "input"), self.U, {"long_name": "input matrix"}),
+            "comparable": (("state", "of_state"), self.comparable, {"long_name": "to comparable coordinates"}),
+            "state_value": (("state",), self.state_values, {"long_name": "state at the point"}),
+            "input_value": (("input",), self.input_values, {"long_name": "input at the point"}),
+        }
+        coordinates = {
+            "state": other,
+            "of_state": other,
+            "input": list(self.inputs),
+            "state_unit": ("state", list(self.state_units)),
+            "input_unit": ("input", list(self.input_units)),
+        }
+        header = {"kind": KIND, "format": FORMAT, "tethership_version": __version__}
+        return xr.Dataset(variables, coordinates, header | {"attributes": json.dumps(self.attributes, sort_keys=True)})
+
+    def save(self, path: str | Path) -> None:
+        """Write the model to netCDF; raises ConfigError where that cannot be."""
+        store.write(self.to_dataset(), Path(path))
+
+    @classmethod
+    def load(cls, path: str | Path) -> "LinearModel":
+        """Return the model of a file; raises ConfigError where it is none."""
+        data = store.read(Path(path), KIND, FORMAT)
+        return cls(
+            data["A"].values,
+            data["U"].values,
+            tuple(map(str, data["state"].values)),
+            tuple(map(str, data["input"].values)),
+            tuple(map(str, data["state_unit"].values)),
+            tuple(map(str, data["input_unit"].values)),
+            data["state_value"].values,
+            data["input_value"].values,
+            data["comparable"].values,
+            json.loads(data.attrs["attributes"]),
+        )
+
+
+def _places(chosen: Sequence[str], known: Sequence[str], what: str) -> list[int]:
+    """Return the places of names, or raise ConfigError that offers the nearest."""
+    for name in chosen:
+        if name not in known:
+            raise ConfigError(f"the model has no {what} {name!r}{suggestion(name, known)} It has: {', '.join(known)}")
+    return [list(known).index(name) for name in chosen]
