@@ -1,0 +1,231 @@
+"""Trim and linear model of many points in one batched, compiled call, by continuation from a known trim.
+
+Depends on: analysis.posing, analysis.equilibrium, analysis.linearize, scenario.
+
+Every point is reached from the reference along a straight path in the parameters, all points together: first in one
+step; those that do not converge, and all where states are looked for (several equilibria may exist), in more and
+shorter ones. The batch is the last axis.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from tethership.analysis.equilibrium import EFFORT, RESIDUAL_LIMIT, Problem, described
+from tethership.analysis.linearize import comparable_coordinates
+from tethership.analysis.posing import Question, pose
+from tethership.analysis.right_side import input_vector, right_side
+from tethership.scenario import ScenarioConfig
+from tethership.scenario.build import build_system
+from tethership.scenario.parameters import with_values
+from tethership.spatial import STANDARD_GRAVITY
+from tethership.system import TetheredAirship
+
+BATCH = 128
+"""Points of one compiled call: fixed, so that every sweep runs the same program."""
+
+STAGES = (1, 8, 64)
+"""Steps of the path from the reference, tried in turn."""
+
+MOST_ITERATIONS = 30
+LARGEST_STEP = 3.0
+"""Longest Newton step of a state, in its unit (0.1 rad, 1 m, 1 m/s)."""
+
+CONVERGED = 1e-11
+"""Newton step below which a trim is done, in the unknowns' units."""
+
+_RIDGE = 1e-14
+"""Added to the normal equations, relative: directions without any effect stay where they are."""
+
+
+class Batch(NamedTuple):
+    """What is known of a batch of points; the last axis is the batch.
+
+    Attributes
+    ----------
+    unknowns : Array
+        Solution in the unknowns' units.
+    state : Array
+        Twelve states.
+    throttle : Array
+        δ [-], not clipped.
+    tension : Array
+        Tension of each cable [N].
+    residual : Array
+        Force and moment left over with throttles not clipped [N, N m].
+    limit : Array
+        Largest residual of an equilibrium [N, N m].
+    matrix : Array
+        A [SI], (12, 12).
+    comparable : Array
+        Matrix to comparable coordinates, (12, 12).
+    """
+
+    unknowns: Array
+    state: Array
+    throttle: Array
+    tension: Array
+    residual: Array
+    limit: Array
+    matrix: Array
+    comparable: Array
+
+
+def _newton(problem: Problem, start: Float[Array, "unknowns"]) -> Float[Array, "unknowns"]:
+    """Return the unknowns of an equilibrium with the least effort, from a start nearby.
+
+    Notes
+    -----
+    Gauss–Newton on the balance and a small weight on the effort (as `equilibrium.solve`): the fixed point has the
+    least norm of throttles to 1e-6 and a residual far below that of an equilibrium.
+    """
+    unit = 1e-3 * problem.plant.ship.gravity.mass * STANDARD_GRAVITY
+    effort = EFFORT**2 * problem.unknowns.effort
+    longest = jnp.where(problem.unknowns.effort > 0, jnp.inf, LARGEST_STEP)
+
+    def balance(values: Float[Array, "unknowns"]) -> Float[Array, "6"]:
+        return problem.residual(*problem.unpack(values)) / unit
+
+    def step(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
+        count, values, _ = carry
+        residual, slope = balance(values), jax.jacfwd(balance)(values)
+        normal = slope.T @ slope
+        ridge = _RIDGE * jnp.trace(normal) + 1e-30
+        move = -jnp.linalg.solve(
+            normal + jnp.diag(effort + ridge), slope.T @ residual + effort * values
+        )
+        move = jnp.where(jnp.isfinite(move), move, 0.0)
+        shrink = jnp.minimum(1.0, jnp.min(longest / jnp.maximum(jnp.abs(move), 1e-300)))
+        return count + 1, values + shrink * move, jnp.max(jnp.abs(move))
+
+    def unfinished(carry: tuple[Array, Array, Array]) -> Array:
+        count, _, moved = carry
+        return (count < MOST_ITERATIONS) & (moved > CONVERGED)
+
+    return jax.lax.while_loop(unfinished, step, (jnp.zeros((), int), start, jnp.asarray(jnp.inf)))[1]
+
+
+@eqx.filter_jit
+def _solve_batch(
+    config: ScenarioConfig,
+    places: tuple[tuple[int, ...], ...],
+    question: Question,
+    values: Float[Array, "parameters batch"],
+    starts: Float[Array, "unknowns batch"],
+) -> Batch:
+    """Return a batch of trims with their state matrices; `places` are the leaves that each parameter moves."""
+
+    def point(value: Float[Array, "parameters"], start: Float[Array, "unknowns"]) -> Batch:
+        here = _placed(config, places, value)
+        plant = build_system(here)
+        problem = pose(here, plant, question)
+        found = _newton(problem, start)
+        state, command, tension, residual, _ = described(problem, found)
+        vector, inputs = state.as_vector(), input_vector(plant, command)
+        matrix = jax.jacfwd(lambda s: right_side(plant, s, inputs))(vector)
+        weight = jnp.maximum(plant.ship.gravity.mass * STANDARD_GRAVITY, 1.0)
+        return Batch(
+            found,
+            vector,
+            command.throttle,
+            tension,
+            residual,
+            RESIDUAL_LIMIT * weight,
+            matrix,
+            comparable_coordinates(plant, vector),
+        )
+
+    return jax.vmap(point, in_axes=-1, out_axes=-1)(values, starts)
+
+
+def _placed(
+    config: ScenarioConfig, places: tuple[tuple[int, ...], ...], values: Float[Array, "parameters"]
+) -> ScenarioConfig:
+    leaves, structure = jax.tree_util.tree_flatten(config)
+    for i, group in enumerate(places):
+        for place in group:
+            leaves[place] = values[i]
+    return jax.tree_util.tree_unflatten(structure, leaves)
+
+
+def solve_points(
+    config: ScenarioConfig,
+    places: Sequence[tuple[int, ...]],
+    question: Question,
+    values: np.ndarray,
+    reference: np.ndarray,
+    start: np.ndarray,
+) -> Batch:
+    """Return trims and state matrices of many points.
+
+    Parameters
+    ----------
+    config : ScenarioConfig
+        The scenario; its numbers as arrays.
+    places : sequence
+        Leaves that each parameter moves (`Parameter.places`).
+    question : Question
+        What the trim looks for.
+    values : ndarray
+        Parameters of every point [SI], shape (points, parameters).
+    reference : ndarray
+        Parameters of the known trim [SI].
+    start : ndarray
+        Its unknowns.
+    """
+    fixed = tuple(tuple(group) for group in places)
+
+    def at(where: np.ndarray, begin: np.ndarray) -> Batch:
+        return _in_batches(config, fixed, question, where, begin)
+
+    def along(stages: int, chosen: np.ndarray) -> Batch:
+        begin = np.repeat(start[None], len(chosen), axis=0)
+        found = None
+        for stage in range(1, stages + 1):
+            share = stage / stages
+            found = at(reference + share * (chosen - reference), begin)
+            begin = np.where(np.isfinite(found.unknowns), found.unknowns, begin)
+        assert found is not None
+        return found
+
+    searched_states = bool(np.any(np.asarray(question.unknowns.effort) == 0.0))
+    stages = STAGES[1:] if searched_states else STAGES
+    result = along(stages[0], values)
+    for count in stages[1:]:
+        missing = np.flatnonzero(~in_equilibrium(result))
+        if not len(missing):
+            break
+        better = along(count, values[missing])
+        for old, new in zip(result, better, strict=True):
+            old[missing] = new
+    return result
+
+
+def in_equilibrium(batch: Batch) -> np.ndarray:
+    """Return which points (first axis) are in equilibrium, with a state matrix that is finite."""
+    small = np.abs(batch.residual).max(axis=1) <= batch.limit
+    return small & np.isfinite(batch.matrix).all(axis=(1, 2))
+
+
+def _in_batches(
+    config: ScenarioConfig,
+    places: tuple[tuple[int, ...], ...],
+    question: Question,
+    values: np.ndarray,
+    starts: np.ndarray,
+) -> Batch:
+    """Return the points of `values` (points first), computed in batches of one size."""
+    parts = []
+    for first in range(0, len(values), BATCH):
+        rows = np.minimum(np.arange(first, first + BATCH), len(values) - 1)
+        parts.append((rows, _solve_batch(config, places, question, values[rows].T, starts[rows].T)))
+    fields = []
+    for name in Batch._fields:
+        arrays = [np.moveaxis(np.asarray(getattr(part, name)), -1, 0) for _, part in parts]
+        fields.append(np.concatenate(arrays)[: len(values)])
+    return Batch(*fields)

@@ -1,0 +1,332 @@
+"""Root loci: trim, linear model and modes along any parameters of a scenario, every mode followed by name.
+
+Depends on: analysis.continuation, analysis.tracking, analysis.trim, scenario.
+"""
+
+import dataclasses
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from tethership.analysis.continuation import Batch, in_equilibrium, solve_points
+from tethership.analysis.equilibrium import solve
+from tethership.analysis.mode_names import assign, conjugates, mode_name, slots_of, track_names
+from tethership.analysis.posing import Question, ask, posed
+from tethership.analysis.tracking import (
+    Event,
+    Path,
+    eigen_path,
+    find_events,
+    follow,
+    matched,
+    named_order,
+    participation,
+)
+from tethership.analysis.trim import TrimOutcome, trim
+from tethership.errors import ConfigError, TethershipError
+from tethership.scenario import Scenario
+from tethership.scenario.parameters import Parameter, find_parameter, list_parameters, scenario_at
+from tethership.system.state import STATE_NAMES
+
+FINE = 160
+"""Points along a line between which eigenvectors are compared: coarser sweeps are filled up to as many."""
+
+Axis = Mapping[str, Sequence[float] | np.ndarray]
+"""Parameters moved together along one axis: name → values [SI]."""
+
+
+class Happening(NamedTuple):
+    """An event of a sweep.
+
+    Attributes
+    ----------
+    kind : str
+        coalesce, split, cross, unstable, stable (see `tracking.Event`).
+    tracks : tuple of str
+        Whose.
+    at : dict[str, float]
+        Parameters where it happens [SI].
+    eigenvalue : complex
+        λ there [1/s].
+    """
+
+    kind: str
+    tracks: tuple[str, ...]
+    at: dict[str, float]
+    eigenvalue: complex
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Sweep:
+    """Root loci over a line or a grid of points; arrays have the points first, the last axis of the grid fastest.
+
+    Attributes
+    ----------
+    scenario : Scenario
+        What was swept.
+    axes : tuple
+        Names of the parameters moved together along each axis.
+    units : dict[str, str]
+        SI unit of each parameter.
+    values : dict[str, ndarray]
+        Each parameter at every point [SI].
+    shape : tuple of int
+        Number of points along each axis.
+    tracks : tuple of str
+        Names of the tracks, one for every eigenvalue, given where each line starts.
+    eigenvalues : ndarray
+        λ [1/s], complex, shape (points, tracks); NaN where there is no equilibrium (see `outcomes`).
+    outcomes : tuple of TrimOutcome
+        How each point's trim ended: points without one stay.
+    states, throttle, tension, residual : ndarray
+        The trims: twelve states, δ [-] (not clipped), tensions [N], force and moment left over [N, N m].
+    matrices : ndarray
+        A at every point, shape (points, 12, 12).
+    mode_names : tuple
+        Name of each track's mode at every point, from participation there.
+    events : tuple of Happening
+        Coalescence, splits, crossings and passages of the imaginary axis.
+    """
+
+    scenario: Scenario
+    axes: tuple[tuple[str, ...], ...]
+    units: dict[str, str]
+    values: dict[str, np.ndarray]
+    shape: tuple[int, ...]
+    tracks: tuple[str, ...]
+    eigenvalues: np.ndarray
+    outcomes: tuple[TrimOutcome, ...]
+    states: np.ndarray
+    throttle: np.ndarray
+    tension: np.ndarray
+    residual: np.ndarray
+    matrices: np.ndarray
+    mode_names: tuple[tuple[str, ...], ...]
+    events: tuple[Happening, ...]
+
+    @property
+    def trimmed(self) -> np.ndarray:
+        """Which points are in equilibrium with the thrust there is."""
+        return np.array([outcome is TrimOutcome.converged for outcome in self.outcomes])
+
+    def track(self, name: str) -> np.ndarray:
+        """Return one track's eigenvalues [1/s]; NaN where the point cannot be trimmed with the thrust there is.
+
+        Raises
+        ------
+        ConfigError
+            There is no such track.
+        """
+        if name not in self.tracks:
+            raise ConfigError(f"the sweep has no track {name!r}; it has {', '.join(self.tracks)}")
+        return np.where(self.trimmed, self.eigenvalues[:, self.tracks.index(name)], np.nan)
+
+    def at(self, point: int) -> Scenario:
+        """Return the scenario of one point, to be trimmed, linearised or flown."""
+        return scenario_at(self.scenario, {name: float(values[point]) for name, values in self.values.items()})
+
+
+def sweep(scenario: Scenario, *axes: Axis) -> Sweep:
+    """Return trim, state matrix and named, followed modes along parameters of a scenario.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        From `load_scenario`.
+    *axes : mapping
+        Each axis moves one parameter or several together: ``{"wind.speed": np.linspace(6, 12, 13)}``. More than one
+        axis make a grid. Values in SI; names as in the file (`cables.nose.length`, `vehicle.fins.*.area`).
+
+    Notes
+    -----
+    Trims start from the scenario's own (or that of an end of the sweep) and are continued along the parameters, all
+    points in one compiled batch. Lines are filled with points in between until eigenvectors of neighbours are alike,
+    so that modes are followed through crossings and coalescence; events are placed between those points.
+
+    Raises
+    ------
+    ConfigError
+        A parameter does not exist (nearest names offered), a range is empty, not finite or out of the file's bounds.
+    """
+    parameters, grid, shape = _grid(scenario, axes)
+    fill = max(1, math.ceil(FINE / max(shape[-1] - 1, 1))) if shape[-1] > 1 else 1
+    fine, per_line = _filled(grid, shape[-1], fill)
+    question = ask(scenario)
+    reference, start = _reference(scenario, parameters, grid, question)
+    batch = solve_points(
+        scenario.config.as_arrays(), [p.places for p in parameters], question, fine, reference, start
+    )
+    path = _path(batch)
+    orders, lines = _followed(path, per_line, shape[:-1])
+    ordered = np.take_along_axis(path.values, orders, axis=1)
+    names = [parameter.name for parameter in parameters]
+    tracks = track_names(STATE_NAMES)
+    events = [event for line in lines for event in _happenings(ordered, path.valid, line, fine, names, tracks)]
+    kept = np.concatenate([np.arange(line.start, line.stop, fill) for line in lines])
+    valid = path.valid[kept]
+    return Sweep(
+        scenario=scenario,
+        axes=tuple(tuple(_full_name(scenario, name) for name in axis) for axis in axes),
+        units={parameter.name: parameter.unit for parameter in parameters},
+        values={name: grid[:, i] for i, name in enumerate(names)},
+        shape=shape,
+        tracks=tuple(tracks),
+        eigenvalues=np.where(valid[:, None], ordered[kept], np.nan),
+        outcomes=_outcomes(scenario, batch.throttle[kept], valid),
+        states=batch.state[kept],
+        throttle=batch.throttle[kept],
+        tension=batch.tension[kept],
+        residual=batch.residual[kept],
+        matrices=batch.matrix[kept],
+        mode_names=tuple(_names_at(path, i, orders[i], tracks) for i in kept),
+        events=tuple(events),
+    )
+
+
+def _full_name(scenario: Scenario, name: str) -> str:
+    return find_parameter(list_parameters(scenario.config), name, scenario.name).name
+
+
+def _grid(scenario: Scenario, axes: tuple[Axis, ...]) -> tuple[list[Parameter], np.ndarray, tuple[int, ...]]:
+    """Return the parameters, their values at all points (points, parameters) and the shape of the grid."""
+    known = list_parameters(scenario.config)
+    parameters: list[Parameter] = []
+    columns: list[tuple[int, np.ndarray]] = []
+    shape: list[int] = []
+    if not axes or not all(axes):
+        raise ConfigError("sweep: name at least one parameter with its values")
+    for index, axis in enumerate(axes):
+        lengths = {name: len(np.atleast_1d(values)) for name, values in axis.items()}
+        if len(set(lengths.values())) != 1:
+            raise ConfigError(f"sweep: parameters moved together need as many values each; there are {lengths}")
+        shape.append(next(iter(lengths.values())))
+        for name, values in axis.items():
+            parameter = find_parameter(known, name, scenario.name)
+            if parameter.name in [other.name for other in parameters]:
+                raise ConfigError(f"sweep: {parameter.name} is named twice; name each parameter once")
+            parameters.append(parameter)
+            columns.append((index, _checked(name, np.atleast_1d(np.asarray(values, dtype=float)))))
+    mesh = np.meshgrid(*[np.arange(count) for count in shape], indexing="ij")
+    grid = np.stack([values[mesh[index].ravel()] for index, values in columns], axis=1)
+    for row in {0, len(grid) - 1}:
+        scenario_at(scenario, dict(zip([p.name for p in parameters], grid[row], strict=True)))
+    return parameters, grid, tuple(shape)
+
+
+def _checked(name: str, values: np.ndarray) -> np.ndarray:
+    """Return the values of a parameter, or raise ConfigError."""
+    if values.size == 0:
+        raise ConfigError(f"sweep: the range of {name} is empty; give at least one value")
+    if not np.isfinite(values).all():
+        raise ConfigError(f"sweep: the range of {name} has values that are not finite numbers")
+    return values
+
+
+def _filled(grid: np.ndarray, count: int, fill: int) -> tuple[np.ndarray, int]:
+    """Return the points with `fill` − 1 more between neighbours of every line, and how many a line then has."""
+    lines = grid.reshape(-1, count, grid.shape[1])
+    places = np.linspace(0.0, count - 1.0, (count - 1) * fill + 1)
+    before = np.minimum(places.astype(int), max(count - 2, 0))
+    share = (places - before)[:, None]
+    after = np.minimum(before + 1, count - 1)
+    fine = (1.0 - share) * lines[:, before] + share * lines[:, after]
+    fine[:, ::fill] = lines
+    return fine.reshape(-1, grid.shape[1]), len(places)
+
+
+def _reference(
+    scenario: Scenario, parameters: list[Parameter], grid: np.ndarray, question: Question
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return parameters and unknowns of a known trim: the scenario's own, or that of an end or the middle."""
+    names = [parameter.name for parameter in parameters]
+    own = np.array([parameter.value for parameter in parameters])
+    candidates = [own, grid[0], grid[-1], grid[len(grid) // 2]]
+    start = np.zeros(len(question.unknowns.index))
+    for values in candidates:
+        try:
+            here = scenario if values is own else scenario_at(scenario, dict(zip(names, values, strict=True)))
+            found = trim(here)
+        except TethershipError:
+            continue
+        if found.outcome is not TrimOutcome.no_equilibrium:
+            return values, solve(posed(here.config.as_arrays(), here.system, question))
+    return own, start
+
+
+def _path(batch: Batch) -> Path:
+    """Return the eigenvalues and eigenvectors of all points."""
+    valid = in_equilibrium(batch)
+    comparable = batch.comparable @ batch.matrix @ np.linalg.inv(batch.comparable)
+    return eigen_path(comparable, valid)
+
+
+def _followed(path: Path, per_line: int, outer: tuple[int, ...]) -> tuple[np.ndarray, list[range]]:
+    """Return the order of the eigenvalues at every point and the lines; every line continues the one before it."""
+    slots = slots_of(STATE_NAMES)
+    orders = np.zeros((len(path.values), len(STATE_NAMES)), dtype=int)
+    lines = [range(first, first + per_line) for first in range(0, len(path.values), per_line)]
+    starts: dict[tuple[int, ...], int] = {}
+    for place, line in zip(np.ndindex(*outer) if outer else [()], lines, strict=True):
+        valid = [i for i in line if path.valid[i]]
+        if not valid:
+            continue
+        start = valid[0]
+        order = _linked(path, orders, start, starts, place)
+        starts[place] = start
+        part = Path(path.values[line.start : line.stop], path.vectors[line.start : line.stop], path.valid[line.start : line.stop])
+        orders[line.start : line.stop] = follow(part, start - line.start, order, STATE_NAMES, slots)
+    return orders, lines
+
+
+def _linked(
+    path: Path, orders: np.ndarray, start: int, starts: dict[tuple[int, ...], int], place: tuple[int, ...]
+) -> np.ndarray:
+    """Return the order where a line starts: matched to its neighbour's start, or by names on the first line."""
+    for axis in reversed(range(len(place))):
+        neighbour = (*place[:axis], place[axis] - 1, *place[axis + 1 :])
+        if neighbour in starts:
+            return matched(path, starts[neighbour], start, orders[starts[neighbour]])
+    return named_order(path, start, STATE_NAMES)
+
+
+def _happenings(
+    ordered: np.ndarray, valid: np.ndarray, line: range, fine: np.ndarray, names: list[str], tracks: list[str]
+) -> Iterator[Happening]:
+    """Yield the events of one line with the parameters where they happen."""
+    rows = slice(line.start, line.stop)
+    found: list[Event] = find_events(ordered[rows], valid[rows], tracks)
+    for event in found:
+        before = min(int(event.position), len(line) - 2)
+        share = event.position - before
+        here = (1.0 - share) * fine[line.start + before] + share * fine[line.start + before + 1]
+        yield Happening(event.kind, event.tracks, dict(zip(names, here.tolist(), strict=True)), event.eigenvalue)
+
+
+def _outcomes(scenario: Scenario, throttle: np.ndarray, valid: np.ndarray) -> tuple[TrimOutcome, ...]:
+    """Return how each point's trim ended."""
+    thrusters = scenario.system.ship.thrusters
+    allowed = np.asarray(jax.vmap(thrusters.saturate)(jnp.asarray(throttle)))
+    saturated = (allowed != throttle).any(axis=1)
+    return tuple(
+        (TrimOutcome.saturated if over else TrimOutcome.converged) if good else TrimOutcome.no_equilibrium
+        for good, over in zip(valid, saturated, strict=True)
+    )
+
+
+def _names_at(path: Path, index: int, order: np.ndarray, tracks: list[str]) -> tuple[str, ...]:
+    """Return the name of each track's mode at a point, from participation there."""
+    if not path.valid[index]:
+        return tuple("" for _ in tracks)
+    values, share = path.values[index], participation(path.vectors[index])
+    partner, slots = conjugates(values), slots_of(STATE_NAMES)
+    chosen = assign(share, STATE_NAMES, partner)
+    names = [""] * len(values)
+    for place in range(len(values)):
+        pair = sorted({int(chosen[place]), int(chosen[partner[place]])})
+        parts = dict(zip(STATE_NAMES, share[:, place], strict=True))
+        names[place] = mode_name(slots[pair[0]], slots[pair[1]] if len(pair) > 1 else None, parts)
+    return tuple(names[place] for place in order)
