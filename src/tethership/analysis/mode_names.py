@@ -104,14 +104,6 @@ def assign(participation: np.ndarray, states: Sequence[str], pairs: np.ndarray) 
     return result
 
 
-def conjugates(values: np.ndarray) -> np.ndarray:
-    """Return the place of each eigenvalue's conjugate; its own where it is real."""
-    distance = np.abs(values[:, None] - values.conj()[None, :])
-    partner = np.argmin(distance, axis=1)
-    partner[values.imag == 0.0] = np.flatnonzero(values.imag == 0.0)
-    return partner
-
-
 def mode_name(first: Slot, second: Slot | None, share: dict[str, float]) -> str:
     """Return the name of a real mode (one slot) or of an oscillation (two).
 

@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from tethership.analysis.linear_model import LinearModel
-from tethership.analysis.mode_names import assign, conjugates, mode_name, slots_of, unique
+from tethership.analysis.mode_names import assign, mode_name, slots_of, unique
 from tethership.analysis.spectrum import NULL, Spectrum, analyse
+from tethership.analysis.tracking import partners_of
 from tethership.errors import ConfigError, suggestion
 
 
@@ -131,7 +132,7 @@ def find_modes(model: LinearModel) -> Modes:
     """
     spectrum = analyse(model.comparable_matrix())
     values, states = spectrum.eigenvalues, model.states
-    partner = conjugates(values)
+    partner = partners_of(values)
     slots, chosen = slots_of(states), assign(spectrum.participation, states, partner)
     group_of = {place: index for index, group in enumerate(spectrum.groups) for place in group}
     size = max(float(np.abs(values).max(initial=0.0)), 1e-300)

@@ -14,7 +14,7 @@ import numpy as np
 
 from tethership.analysis.continuation import Batch, in_equilibrium, solve_points
 from tethership.analysis.equilibrium import solve
-from tethership.analysis.mode_names import assign, conjugates, mode_name, slots_of, track_names
+from tethership.analysis.mode_names import assign, mode_name, slots_of, track_names
 from tethership.analysis.posing import Question, ask, posed
 from tethership.analysis.tracking import (
     Event,
@@ -86,8 +86,10 @@ class Sweep:
         The trims: twelve states, δ [-] (not clipped), tensions [N], force and moment left over [N, N m].
     matrices : ndarray
         A at every point, shape (points, 12, 12).
-    mode_names : tuple
-        Name of each track's mode at every point, from participation there.
+    path : Path
+        Eigenvalues and eigenvectors (columns, comparable coordinates) at every point, in the solver's order.
+    orders : ndarray of int
+        Place in `path` of each track's eigenvalue, shape (points, tracks).
     events : tuple of Happening
         Coalescence, splits, crossings and passages of the imaginary axis.
     """
@@ -105,7 +107,8 @@ class Sweep:
     tension: np.ndarray
     residual: np.ndarray
     matrices: np.ndarray
-    mode_names: tuple[tuple[str, ...], ...]
+    path: Path
+    orders: np.ndarray
     events: tuple[Happening, ...]
 
     @property
@@ -124,6 +127,19 @@ class Sweep:
         if name not in self.tracks:
             raise ConfigError(f"the sweep has no track {name!r}; it has {', '.join(self.tracks)}")
         return np.where(self.trimmed, self.eigenvalues[:, self.tracks.index(name)], np.nan)
+
+    def names_at(self, point: int) -> tuple[str, ...]:
+        """Return the name of each track's mode at a point, from participation there; empty where there is none."""
+        if not self.path.valid[point]:
+            return tuple("" for _ in self.tracks)
+        share, partner = participation(self.path.vectors[point]), self.path.partners[point]
+        slots, chosen = slots_of(STATE_NAMES), assign(share, STATE_NAMES, partner)
+        names = []
+        for place in self.orders[point]:
+            pair = sorted({int(chosen[place]), int(chosen[partner[place]])})
+            parts = dict(zip(STATE_NAMES, share[:, place].tolist(), strict=True))
+            names.append(mode_name(slots[pair[0]], slots[pair[1]] if len(pair) > 1 else None, parts))
+        return tuple(names)
 
     def at(self, point: int) -> Scenario:
         """Return the scenario of one point, to be trimmed, linearised or flown."""
@@ -182,7 +198,8 @@ def sweep(scenario: Scenario, *axes: Axis) -> Sweep:
         tension=batch.tension[kept],
         residual=batch.residual[kept],
         matrices=batch.matrix[kept],
-        mode_names=tuple(_names_at(path, i, orders[i], tracks) for i in kept),
+        path=Path(*(array[kept] for array in path)),
+        orders=orders[kept],
         events=tuple(events),
     )
 
@@ -277,8 +294,8 @@ def _followed(path: Path, per_line: int, outer: tuple[int, ...]) -> tuple[np.nda
         start = valid[0]
         order = _linked(path, orders, start, starts, place)
         starts[place] = start
-        part = Path(path.values[line.start : line.stop], path.vectors[line.start : line.stop], path.valid[line.start : line.stop])
-        orders[line.start : line.stop] = follow(part, start - line.start, order, STATE_NAMES, slots)
+        rows = slice(line.start, line.stop)
+        orders[rows] = follow(path.part(rows), start - line.start, order, STATE_NAMES, slots)
     return orders, lines
 
 
@@ -315,18 +332,3 @@ def _outcomes(scenario: Scenario, throttle: np.ndarray, valid: np.ndarray) -> tu
         (TrimOutcome.saturated if over else TrimOutcome.converged) if good else TrimOutcome.no_equilibrium
         for good, over in zip(valid, saturated, strict=True)
     )
-
-
-def _names_at(path: Path, index: int, order: np.ndarray, tracks: list[str]) -> tuple[str, ...]:
-    """Return the name of each track's mode at a point, from participation there."""
-    if not path.valid[index]:
-        return tuple("" for _ in tracks)
-    values, share = path.values[index], participation(path.vectors[index])
-    partner, slots = conjugates(values), slots_of(STATE_NAMES)
-    chosen = assign(share, STATE_NAMES, partner)
-    names = [""] * len(values)
-    for place in range(len(values)):
-        pair = sorted({int(chosen[place]), int(chosen[partner[place]])})
-        parts = dict(zip(STATE_NAMES, share[:, place], strict=True))
-        names[place] = mode_name(slots[pair[0]], slots[pair[1]] if len(pair) > 1 else None, parts)
-    return tuple(names[place] for place in order)

@@ -1,11 +1,13 @@
 """Following eigenvalues along a path of points by the likeness of their eigenvectors. Depends on: numpy, scipy."""
 
+import itertools
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 import scipy.optimize
 
-from tethership.analysis.mode_names import Slot, assign, conjugates
+from tethership.analysis.mode_names import Slot, assign
 from tethership.analysis.spectrum import NULL
 
 
@@ -18,13 +20,20 @@ class Path(NamedTuple):
         λ [1/s], complex, shape (points, n); null ones are exactly zero.
     vectors : ndarray
         Right eigenvectors as columns, of unit length, shape (points, n, n).
+    partners : ndarray of int
+        Place of each eigenvalue's conjugate, its own where it is real, shape (points, n).
     valid : ndarray of bool
         Points that have them.
     """
 
     values: np.ndarray
     vectors: np.ndarray
+    partners: np.ndarray
     valid: np.ndarray
+
+    def part(self, rows: slice) -> "Path":
+        """Return some of the points."""
+        return Path(self.values[rows], self.vectors[rows], self.partners[rows], self.valid[rows])
 
 
 def eigen_path(matrices: np.ndarray, valid: np.ndarray) -> Path:
@@ -33,7 +42,13 @@ def eigen_path(matrices: np.ndarray, valid: np.ndarray) -> Path:
     values, vectors = np.linalg.eig(safe)
     size = np.abs(values).max(axis=1, keepdims=True)
     values = np.where(np.abs(values) < NULL * size, 0.0, values).astype(complex)
-    return Path(values, vectors.astype(complex), valid)
+    return Path(values, vectors.astype(complex), partners_of(values), valid)
+
+
+def partners_of(values: np.ndarray) -> np.ndarray:
+    """Return the place of each eigenvalue's conjugate; its own where it is real. The last axis is the eigenvalues."""
+    distance = np.abs(values[..., :, None] - values[..., None, :].conj())
+    return np.where(values.imag == 0.0, np.arange(values.shape[-1]), np.argmin(distance, axis=-1))
 
 
 def participation(vectors: np.ndarray) -> np.ndarray:
@@ -47,20 +62,17 @@ def participation(vectors: np.ndarray) -> np.ndarray:
 
 def named_order(path: Path, index: int, states: tuple[str, ...]) -> np.ndarray:
     """Return the place of each slot's eigenvalue at a point, by names."""
-    values = path.values[index]
-    chosen = assign(participation(path.vectors[index]), states, conjugates(values))
-    order = np.argsort(chosen)
-    return _upper_first(values, order)
+    chosen = assign(participation(path.vectors[index]), states, path.partners[index])
+    return _upper_first(path, index, np.argsort(chosen))
 
 
-def _upper_first(values: np.ndarray, order: np.ndarray) -> np.ndarray:
+def _upper_first(path: Path, index: int, order: np.ndarray) -> np.ndarray:
     """Return the order with the upper member of each pair in the earlier slot."""
-    order = order.copy()
-    for first in range(len(order)):
-        for second in range(first + 1, len(order)):
-            a, b = values[order[first]], values[order[second]]
-            if a.imag < 0 and a == b.conjugate():
-                order[first], order[second] = order[second], order[first]
+    partner = np.argsort(order)[path.partners[index][order]]
+    lower = np.flatnonzero((path.values[index][order].imag < 0) & (partner > np.arange(len(order))))
+    if len(lower):
+        order = order.copy()
+        order[lower], order[partner[lower]] = order[partner[lower]], order[lower]
     return order
 
 
@@ -119,11 +131,12 @@ def _settled(
     slots: list[Slot],
 ) -> np.ndarray:
     """Return the order with upper members first, and tracks of a pair that breaks told apart by their slots."""
-    new = _upper_first(path.values[after], new)
+    new = _upper_first(path, after, new)
     was, now = path.values[before][old], path.values[after][new]
-    broken = [(i, j) for i, j in pairs_of(was) if now[i].imag == 0 and now[j].imag == 0]
-    if not broken:
+    real = now.imag == 0
+    if not np.any(real & (was.imag != 0)):
         return new
+    broken = [(i, j) for i, j in _pairs(partners_of(was)) if real[i] and real[j]]
     share = participation(path.vectors[after])[:, new]
     for i, j in broken:
         straight = _fit(slots[i], share[:, i], states) + _fit(slots[j], share[:, j], states)
@@ -140,14 +153,9 @@ def _fit(slot: Slot, share: np.ndarray, states: tuple[str, ...]) -> float:
     return float(weights @ share / max(share.sum(), 1e-300))
 
 
-def pairs_of(values: np.ndarray) -> set[tuple[int, int]]:
+def _pairs(partners: np.ndarray) -> set[tuple[int, int]]:
     """Return the pairs of tracks that are conjugates."""
-    upper = np.flatnonzero(values.imag > 0)
-    found = set()
-    for i in upper:
-        j = int(np.argmin(np.abs(values - values[i].conjugate())))
-        found.add((min(int(i), j), max(int(i), j)))
-    return found
+    return {(i, int(j)) for i, j in enumerate(partners) if i < j}
 
 
 class Event(NamedTuple):
@@ -188,47 +196,58 @@ def find_events(values: np.ndarray, valid: np.ndarray, tracks: list[str]) -> lis
     -----
     Where two meet, the square of their difference goes through zero on a straight line: the place is interpolated on it.
     """
-    events: list[Event] = []
     points = np.flatnonzero(valid)
-    for before, after in zip(points[:-1], points[1:], strict=True):
-        step = (before, after, values[before], values[after])
-        events += _meetings(*step, tracks) + _crossings(*step, tracks) + _axis(*step, tracks)
+    if len(points) < 2:
+        return []
+    kept = values[points]
+    step = _Step(points, kept, partners_of(kept), tracks)
+    events = [*_meetings(step), *_crossings(step), *_axis(step)]
     return sorted(events, key=lambda event: event.position)
 
 
-def _meetings(before: int, after: int, old: np.ndarray, new: np.ndarray, tracks: list[str]) -> list[Event]:
-    first, second = pairs_of(old), pairs_of(new)
-    events = []
-    for kind, pairs in (("split", first - second), ("coalesce", second - first)):
-        for i, j in sorted(pairs):
-            start, end = ((old[i] - old[j]) ** 2).real, ((new[i] - new[j]) ** 2).real
-            share = start / (start - end) if start * end < 0 else 0.5
-            mean = 0.5 * ((1 - share) * (old[i] + old[j]) + share * (new[i] + new[j]))
-            position = before + share * (after - before)
-            events.append(Event(kind, (tracks[i], tracks[j]), float(position), complex(mean.real)))
-    return events
+class _Step(NamedTuple):
+    """Valid points in a row, their eigenvalues by track, the conjugates' tracks, and the tracks' names."""
+
+    points: np.ndarray
+    values: np.ndarray
+    partners: np.ndarray
+    tracks: list[str]
+
+    def event(self, kind: str, tracks: tuple[int, ...], before: int, share: float) -> Event:
+        """Return an event at a share of the way from one valid point to the next, at the tracks' mean eigenvalue."""
+        first, last = self.values[before, list(tracks)].mean(), self.values[before + 1, list(tracks)].mean()
+        position = self.points[before] + share * (self.points[before + 1] - self.points[before])
+        value = complex((1.0 - share) * first + share * last)
+        return Event(kind, tuple(self.tracks[i] for i in tracks), float(position), value)
 
 
-def _crossings(before: int, after: int, old: np.ndarray, new: np.ndarray, tracks: list[str]) -> list[Event]:
-    real = np.flatnonzero((old.imag == 0) & (new.imag == 0))
-    events = []
-    for a, i in enumerate(real):
-        for j in real[a + 1 :]:
-            start, end = (old[i] - old[j]).real, (new[i] - new[j]).real
-            if start * end < 0:
-                share = start / (start - end)
-                value = (1 - share) * old[i] + share * new[i]
-                position = before + share * (after - before)
-                events.append(Event("cross", (tracks[i], tracks[j]), float(position), complex(value)))
-    return events
+def _meetings(step: _Step) -> Iterator[Event]:
+    """Yield where pairs come to be or break."""
+    changed = np.flatnonzero((step.partners[:-1] != step.partners[1:]).any(axis=1))
+    for before in map(int, changed):
+        first, second = _pairs(step.partners[before]), _pairs(step.partners[before + 1])
+        old, new = step.values[before], step.values[before + 1]
+        for kind, pairs in (("split", first - second), ("coalesce", second - first)):
+            for i, j in sorted(pairs):
+                start, end = ((old[i] - old[j]) ** 2).real, ((new[i] - new[j]) ** 2).real
+                share = start / (start - end) if start * end < 0 else 0.5
+                yield step.event(kind, (i, j), before, share)
 
 
-def _axis(before: int, after: int, old: np.ndarray, new: np.ndarray, tracks: list[str]) -> list[Event]:
-    """Return passages of the imaginary axis; of a pair only the upper member's."""
-    events = []
-    for i in np.flatnonzero((old.real * new.real < 0) & (old.imag >= 0) & (new.imag >= 0)):
-        share = old[i].real / (old[i].real - new[i].real)
-        value = (1 - share) * old[i] + share * new[i]
-        kind = "unstable" if new[i].real > 0 else "stable"
-        events.append(Event(kind, (tracks[i],), float(before + share * (after - before)), complex(value)))
-    return events
+def _crossings(step: _Step) -> Iterator[Event]:
+    """Yield where two real eigenvalues pass each other."""
+    real = step.values.imag == 0
+    for i, j in itertools.combinations(range(step.values.shape[1]), 2):
+        apart = (step.values[:, i] - step.values[:, j]).real
+        both = real[:, i] & real[:, j]
+        for before in map(int, np.flatnonzero((apart[:-1] * apart[1:] < 0) & both[:-1] & both[1:])):
+            yield step.event("cross", (i, j), before, apart[before] / (apart[before] - apart[before + 1]))
+
+
+def _axis(step: _Step) -> Iterator[Event]:
+    """Yield passages of the imaginary axis; of a pair only the upper member's."""
+    for i in range(step.values.shape[1]):
+        growth, upper = step.values[:, i].real, step.values[:, i].imag >= 0
+        for before in map(int, np.flatnonzero((growth[:-1] * growth[1:] < 0) & upper[:-1] & upper[1:])):
+            kind = "unstable" if growth[before + 1] > 0 else "stable"
+            yield step.event(kind, (i,), before, growth[before] / (growth[before] - growth[before + 1]))
