@@ -22,9 +22,7 @@ from tethership.analysis.posing import Question, pose
 from tethership.analysis.right_side import input_vector, right_side
 from tethership.scenario import ScenarioConfig
 from tethership.scenario.build import build_system
-from tethership.scenario.parameters import with_values
 from tethership.spatial import STANDARD_GRAVITY
-from tethership.system import TetheredAirship
 
 BATCH = 128
 """Points of one compiled call: fixed, so that every sweep runs the same program."""
@@ -121,7 +119,7 @@ def _solve_batch(
     """Return a batch of trims with their state matrices; `places` are the leaves that each parameter moves."""
 
     def point(value: Float[Array, "parameters"], start: Float[Array, "unknowns"]) -> Batch:
-        here = _placed(config, places, value)
+        here = place_values(config, places, value)
         plant = build_system(here)
         problem = pose(here, plant, question)
         found = _newton(problem, start)
@@ -143,9 +141,10 @@ def _solve_batch(
     return jax.vmap(point, in_axes=-1, out_axes=-1)(values, starts)
 
 
-def _placed(
+def place_values(
     config: ScenarioConfig, places: tuple[tuple[int, ...], ...], values: Float[Array, "parameters"]
 ) -> ScenarioConfig:
+    """Return a configuration with the leaves that each parameter moves set to its value [SI]; may be traced."""
     leaves, structure = jax.tree_util.tree_flatten(config)
     for i, group in enumerate(places):
         for place in group:

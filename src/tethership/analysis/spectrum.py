@@ -44,20 +44,22 @@ class Spectrum(NamedTuple):
     blocks: tuple[int, ...]
 
 
-def analyse(matrix: np.ndarray) -> Spectrum:
+def analyse(matrix: np.ndarray, error: float = ROUNDING) -> Spectrum:
     """Return the spectrum of a real matrix, fastest first.
 
     Parameters
     ----------
     matrix : ndarray
         A in comparable coordinates [1/s], shape (n, n).
+    error : float
+        Relative error of A within which eigenvalues are not told apart.
     """
     values, left, right = scipy.linalg.eig(matrix, left=True, right=True)
     order = np.lexsort((-values.imag, -values.real, -np.abs(values).round(9)))
     values, left, right = values[order], left[:, order], right[:, order]
     size = max(float(np.linalg.norm(matrix, 2)), 1e-300)
     cosine = np.abs(np.sum(left.conj() * right, axis=0))
-    slack = np.minimum(ROUNDING * size / np.maximum(cosine, 1e-300), 1e-4 * size)
+    slack = np.minimum(error * size / np.maximum(cosine, 1e-300), 1e-3 * size)
     groups = _grouped(values, slack)
     vectors = right / right[np.argmax(np.abs(right), axis=0), np.arange(len(values))]
     participation = np.abs(left.conj() * right) / np.maximum(cosine, 1e-300)

@@ -63,9 +63,7 @@ class BodyOfRevolution(eqx.Module):
 
     def radius(self, station: Float[Array, "n"]) -> Float[Array, "n"]:
         """Return r [m] at stations ξ [m]; zero, with zero gradient, where r² is not positive (nose, tail)."""
-        square = self.radius_squared(station)
-        inside = square > 0
-        return jnp.where(inside, jnp.sqrt(jnp.where(inside, square, 1.0)), 0.0)
+        return _safe_root(self.radius_squared(station))
 
     def area_moment(
         self, power: int, origin: Float[Array, ""], start: Float[Array, ""], end: Float[Array, ""]
@@ -107,11 +105,17 @@ class BodyOfRevolution(eqx.Module):
         geometrically, where nodes in ξ leave 1e-4 with 16 strips.
         """
         nodes, weights = np.polynomial.legendre.leggauss(count)
-        low, high = jnp.sqrt(start / self.length), jnp.sqrt(end / self.length)
+        low, high = _safe_root(start / self.length), _safe_root(end / self.length)
         position = 0.5 * (high + low) + 0.5 * (high - low) * nodes
         width = 0.5 * (high - low) * weights * 2.0 * position * self.length
         station = self.length * position**2
         return Strips(station, self.radius(station), width)
+
+
+def _safe_root(square: Float[Array, "n"]) -> Float[Array, "n"]:
+    """Return √ [unit of the root]; zero, with zero gradient, where the argument is not positive."""
+    positive = square > 0
+    return jnp.where(positive, jnp.sqrt(jnp.where(positive, square, 1.0)), 0.0)
 
 
 def gertler(length: Float[Array, ""], diameter: Float[Array, ""], coefficients: Float[Array, "6"]) -> BodyOfRevolution:

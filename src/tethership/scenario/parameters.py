@@ -149,7 +149,7 @@ def find_parameter(known: Mapping[str, Parameter], name: str, scenario_name: str
 
 
 def with_values(config: ScenarioConfig, parameters: Iterable[Parameter], values: Iterable[Any]) -> ScenarioConfig:
-    """Return a configuration with parameters set, without validation; values [SI] may be traced."""
+    """Return a configuration with parameters set, without validation; values [SI]."""
     leaves, structure = jax.tree_util.tree_flatten(config)
     for parameter, value in zip(parameters, values, strict=True):
         for place in parameter.places:

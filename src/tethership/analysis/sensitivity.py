@@ -1,0 +1,283 @@
+"""Exact derivatives of eigenvalues with respect to every number of vehicle and scenario, the trim moving along.
+
+Depends on: analysis, scenario.
+
+    dA/dp = ∂A/∂p + ∂A/∂z dz/dp,     dλ/dp = tr(P dA/dp)/k
+
+z are the trim's unknowns, P the spectral projector of λ and k its multiplicity. dz/dp follows from the implicit
+function theorem on the optimality conditions of the trim, balance(z, p) = 0 with least effort ½|Wz|²:
+
+    [[W + Σμᵢ∇²rᵢ, Jᵀ], [J, 0]] (dz, dμ) = −(∂ₚ(Jᵀμ), ∂ₚr),     J = ∂r/∂z,   Wz + Jᵀμ = 0
+
+A repeated or defective eigenvalue has no derivative: the group's mean has, and is what is given for it.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from tethership.analysis.continuation import place_values
+from tethership.analysis.equilibrium import solve
+from tethership.analysis.linearize import linearize
+from tethership.analysis.modes import find_modes
+from tethership.analysis.posing import Question, ask, pose, posed
+from tethership.analysis.right_side import input_vector, right_side
+from tethership.analysis.spectrum import Spectrum, analyse
+from tethership.analysis.trim import TrimOutcome, TrimPoint, trim
+from tethership.errors import SolveError
+from tethership.scenario import Scenario, ScenarioConfig
+from tethership.scenario.build import build_system
+from tethership.scenario.parameters import Parameter, list_parameters
+from tethership.spatial import STANDARD_GRAVITY
+
+TABLES = ("vehicle.", "atmosphere.", "wind.", "ground.", "cables.", "trim.")
+"""Parts of a scenario on which a trim and its linear model depend."""
+
+COEFFICIENTS = "vehicle.hull.coefficients."
+
+WITHOUT_EFFECT = (".breaking_force", ".rewind_rate", ".fastest_rate")
+
+CLUSTER = 1e-7
+"""Eigenvalues that an error of A of this relative size would let coalesce are taken as one group."""
+
+
+class Sensitivity(NamedTuple):
+    """What one parameter does to an eigenvalue.
+
+    Attributes
+    ----------
+    parameter : str
+        Dotted name.
+    unit : str
+        Its SI unit.
+    value : float
+        Its value [SI].
+    derivative : complex or None
+        dλ/dp [1/s per unit]; None where the point beside this one cannot be trimmed.
+    step : float
+        A change of ordinary size: 1 % of the value; of a value of zero or an angle, see `ordinary_step`.
+    shift : complex or None
+        derivative · step [1/s]; rows are ranked by its modulus.
+    """
+
+    parameter: str
+    unit: str
+    value: float
+    derivative: complex | None
+    step: float
+    shift: complex | None
+
+
+class Sensitivities(NamedTuple):
+    """The ranked table of one mode.
+
+    Attributes
+    ----------
+    mode : str
+        Name of the mode.
+    eigenvalue : complex
+        λ [1/s], or the mean of its group.
+    multiplicity : int
+        Size of the group: above 1 the derivatives are those of the group's mean, λ itself having none.
+    rows : tuple of Sensitivity
+        Largest shift first; parameters that cannot be trimmed beside this point last.
+    """
+
+    mode: str
+    eigenvalue: complex
+    multiplicity: int
+    rows: tuple[Sensitivity, ...]
+
+    @property
+    def message(self) -> str:
+        """One sentence on what the derivatives are."""
+        if self.multiplicity == 1:
+            return f"derivatives of the eigenvalue of {self.mode}"
+        return (
+            f"{self.mode} is one of {self.multiplicity} eigenvalues that coincide: none of them has a derivative; "
+            "derivatives of their mean"
+        )
+
+
+def sensitivities(
+    scenario: Scenario, mode: str | Sequence[str], point: TrimPoint | None = None
+) -> Sensitivities | tuple[Sensitivities, ...]:
+    """Return how every number of vehicle and scenario moves a mode, ranked.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        From `load_scenario`.
+    mode : str or sequence of str
+        Name of a mode of the trimmed ship (see `LinearModel.modes`), or several.
+    point : TrimPoint, optional
+        Its trim; computed if not given.
+
+    Raises
+    ------
+    SolveError
+        The scenario has no trim.
+    ConfigError
+        There is no such mode.
+    """
+    found = trim(scenario) if point is None else point
+    if found.outcome is TrimOutcome.no_equilibrium:
+        raise SolveError(f"{found.outcome.value} Without it there are no modes.")
+    model = linearize(scenario, found)
+    modes = find_modes(model)
+    spectrum = analyse(model.comparable_matrix(), CLUSTER)
+    chosen = [modes.find(name) for name in ([mode] if isinstance(mode, str) else mode)]
+    parameters = _relevant(scenario.config)
+    slopes, exists = matrix_slopes(scenario, list(parameters.values()))
+    to_comparable, back = model.comparable, np.linalg.inv(model.comparable)
+    tables = []
+    for one in chosen:
+        group, projector = _group(spectrum, one.eigenvalue)
+        projector = back @ projector @ to_comparable
+        derivative = np.einsum("ij,kji->k", projector, slopes) / len(group)
+        rows = [*_rows(scenario, parameters, derivative, exists)]
+        rows.sort(key=lambda row: (row.shift is None, -abs(row.shift or 0.0), row.parameter))
+        mean = complex(spectrum.eigenvalues[list(group)].mean())
+        tables.append(Sensitivities(one.name, mean, len(group), tuple(rows)))
+    return tables[0] if isinstance(mode, str) else tuple(tables)
+
+
+def _relevant(config: ScenarioConfig) -> dict[str, Parameter]:
+    """Return the parameters on which a trim may depend and that can change by themselves.
+
+    Notes
+    -----
+    Components along a unit vector cannot, and of a Gertler hull's six coefficients the last closes the tail: it moves
+    against each of the others and has no row of its own.
+    """
+    known = {
+        name: parameter
+        for name, parameter in list_parameters(config).items()
+        if name.startswith(TABLES)
+        and not name.endswith(WITHOUT_EFFECT)
+        and not (".direction." in name and parameter.value != 0.0)
+    }
+    closing = known.pop(f"{COEFFICIENTS}5", None)
+    return known if closing is None else known | {
+        name: parameter._replace(leaves=(*parameter.leaves, closing.leaves[0]))
+        for name, parameter in known.items()
+        if name.startswith(COEFFICIENTS)
+    }
+
+
+def _group(spectrum: Spectrum, eigenvalue: complex) -> tuple[tuple[int, ...], np.ndarray]:
+    """Return the group that an eigenvalue belongs to, and its projector."""
+    nearest = int(np.argmin(np.abs(spectrum.eigenvalues - eigenvalue)))
+    index = next(i for i, group in enumerate(spectrum.groups) if nearest in group)
+    return spectrum.groups[index], spectrum.projectors[index]
+
+
+def _rows(
+    scenario: Scenario, parameters: dict[str, Parameter], derivative: np.ndarray, exists: np.ndarray
+) -> list[Sensitivity]:
+    """Return the rows of the table."""
+    length = scenario.config.vehicle.hull.length
+    rows = []
+    for (name, parameter), slope, there in zip(parameters.items(), derivative, exists, strict=True):
+        step = ordinary_step(parameter, length)
+        given = complex(slope) if there else None
+        rows.append(
+            Sensitivity(name, parameter.unit, parameter.value, given, step, None if given is None else given * step)
+        )
+    return rows
+
+
+def ordinary_step(parameter: Parameter, length: float) -> float:
+    """Return a change of ordinary size: 1 % of the value; for zeros 1 % of the hull's length [m] for lengths, else
+    0.01 of the unit; for angles 0.01 rad; for a coefficient of the hull's profile 0.01."""
+    if parameter.value != 0.0 and parameter.unit != "rad" and not parameter.name.startswith(COEFFICIENTS):
+        return 0.01 * abs(parameter.value)
+    return 0.01 * (length if parameter.unit == "m" else 1.0)
+
+
+def matrix_slopes(scenario: Scenario, parameters: Sequence[Parameter]) -> tuple[np.ndarray, np.ndarray]:
+    """Return dA/dp along the trims, shape (parameters, 12, 12), and whether a trim beside this one exists.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        With a trim.
+    parameters : sequence of Parameter
+        With respect to which; one that stands for several numbers moves all of them alike.
+    """
+    config = scenario.config.as_arrays()
+    question = ask(scenario)
+    values = jnp.asarray(solve(posed(config, scenario.system, question)))
+    places = sorted({place for parameter in parameters for place in parameter.places})
+    leaves = jax.tree_util.tree_leaves(config)
+    current = jnp.stack([jnp.asarray(leaves[place]) for place in places])
+    slopes, left, size = _retrimmed(config, tuple((place,) for place in places), question, current, values)
+    combine = np.array([[_share(parameter, place) for place in places] for parameter in parameters])
+    missing = np.abs(np.einsum("kp,rp->kr", combine, left)).max(axis=1)
+    scale = np.maximum(np.abs(np.einsum("kp,rp->kr", combine, size)).max(axis=1), 1e-9)
+    return np.einsum("kp,ijp->kij", combine, slopes), missing < 1e-6 * scale
+
+
+def _share(parameter: Parameter, place: int) -> float:
+    """Return how far one number moves with a parameter: −1 for the coefficient that closes the hull's tail."""
+    if place not in parameter.places:
+        return 0.0
+    return -1.0 if parameter.name.startswith(COEFFICIENTS) and place != parameter.places[0] else 1.0
+
+
+def _retrimmed(
+    config: ScenarioConfig,
+    places: tuple[tuple[int, ...], ...],
+    question: Question,
+    current: Float[Array, "leaves"],
+    values: Float[Array, "unknowns"],
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return dA/dp (12, 12, leaves), what is left of the balance's derivative after retrimming (6, leaves), and that
+    derivative itself."""
+    count = len(places)
+    effort = np.diag(np.asarray(question.unknowns.effort))
+    slope = np.asarray(_slopes(config, places, question, current, values, jnp.zeros(6))[1])[:, count:]
+    multiplier = -np.linalg.pinv(slope.T, rcond=1e-9) @ (effort @ np.asarray(values))
+    matrix, balance, stationary = map(
+        np.asarray, _slopes(config, places, question, current, values, jnp.asarray(multiplier))
+    )
+    system = np.block([[effort + stationary[:, count:], slope.T], [slope, np.zeros((6, 6))]])
+    right = np.vstack([stationary[:, :count], balance[:, :count]])
+    moved = -(np.linalg.pinv(system, rcond=1e-10) @ right)[: len(slope.T)]
+    total = matrix[..., :count] + matrix[..., count:] @ moved
+    return total, balance[:, :count] + slope @ moved, balance[:, :count]
+
+
+@eqx.filter_jit
+def _slopes(
+    config: ScenarioConfig,
+    places: tuple[tuple[int, ...], ...],
+    question: Question,
+    current: Float[Array, "leaves"],
+    values: Float[Array, "unknowns"],
+    multiplier: Float[Array, "6"],
+) -> tuple[Array, Array, Array]:
+    """Return the derivatives of A, of the balance and of Jᵀμ with respect to numbers and unknowns (last axis)."""
+    count = len(places)
+
+    def everything(together: Float[Array, "n"]) -> tuple[Array, Array, Array]:
+        here = place_values(config, places, together[:count])
+        problem = pose(here, build_system(here), question)
+        plant = problem.plant
+
+        def balance(unknowns: Array) -> Array:
+            unit = 1e-3 * plant.ship.gravity.mass * STANDARD_GRAVITY
+            return problem.residual(*problem.unpack(unknowns)) / unit
+
+        unknowns = together[count:]
+        state, command = problem.unpack(unknowns)
+        inputs = input_vector(plant, command)
+        matrix = jax.jacfwd(lambda s: right_side(plant, s, inputs))(state.as_vector())
+        return matrix, balance(unknowns), multiplier @ jax.jacfwd(balance)(unknowns)
+
+    return jax.jacfwd(everything)(jnp.concatenate([current, values]))
