@@ -4,7 +4,8 @@
 
                      cli                                   commands
                     view                                   plots: draws the data it is given
-          simulation  │   analysis                         one flight │ trim
+                reproduction                               the paper's figures and claims; returns data
+          simulation  │   analysis                         one flight │ trim, linear model, modes, sweeps
                   scenario                                 TOML → system + laws + run settings, validated
             system    │   control                          the plant │ the laws
                    physics                                 one phenomenon per file
@@ -36,49 +37,100 @@ jax.config.update("jax_enable_x64", True)
 use_compilation_cache()
 
 if TYPE_CHECKING:
-    from tethership.analysis import TrimOutcome, TrimPoint, trim
+    from tethership.analysis import (
+        LinearModel,
+        Modes,
+        Sensitivities,
+        Sweep,
+        TrimOutcome,
+        TrimPoint,
+        linearize,
+        sensitivities,
+        sweep,
+        trim,
+    )
     from tethership.control import AbstractLaw, Correction, Measurement
-    from tethership.scenario import Scenario, list_packaged, load_scenario
+    from tethership.reproduction import check_claims, linear_figure
+    from tethership.scenario import Scenario, list_packaged, list_parameters, load_scenario, scenario_at
     from tethership.simulation import Flight, Outcome, dock, fly_again
-    from tethership.view import plot_docking
+    from tethership.view import interactive_root_locus, plot_docking, plot_linear_figure, plot_root_locus
 
 _HOMES = {
     "AbstractLaw": "control",
     "Correction": "control",
     "Flight": "simulation",
+    "LinearModel": "analysis",
     "Measurement": "control",
+    "Modes": "analysis",
     "Outcome": "simulation",
     "Scenario": "scenario",
+    "Sensitivities": "analysis",
+    "Sweep": "analysis",
     "TrimOutcome": "analysis",
     "TrimPoint": "analysis",
+    "check_claims": "reproduction",
     "dock": "simulation",
     "fly_again": "simulation",
+    "interactive_root_locus": "view",
+    "linear_figure": "reproduction",
+    "linearize": "analysis",
     "list_packaged": "scenario",
+    "list_parameters": "scenario",
     "load_scenario": "scenario",
     "plot_docking": "view",
+    "plot_linear_figure": "view",
+    "plot_root_locus": "view",
+    "scenario_at": "scenario",
+    "sensitivities": "analysis",
+    "sweep": "analysis",
     "trim": "analysis",
 }
 
-_PARTS = ("analysis", "control", "physics", "results", "scenario", "simulation", "spatial", "system", "view")
+_PARTS = (
+    "analysis",
+    "control",
+    "physics",
+    "reproduction",
+    "results",
+    "scenario",
+    "simulation",
+    "spatial",
+    "system",
+    "view",
+)
 
 __all__ = [
     "AbstractLaw",
     "ConfigError",
     "Correction",
     "Flight",
+    "LinearModel",
     "Measurement",
+    "Modes",
     "Outcome",
     "Scenario",
+    "Sensitivities",
     "SolveError",
+    "Sweep",
     "TethershipError",
     "TrimOutcome",
     "TrimPoint",
     "__version__",
+    "check_claims",
     "dock",
     "fly_again",
+    "interactive_root_locus",
+    "linear_figure",
+    "linearize",
     "list_packaged",
+    "list_parameters",
     "load_scenario",
     "plot_docking",
+    "plot_linear_figure",
+    "plot_root_locus",
+    "scenario_at",
+    "sensitivities",
+    "sweep",
     "trim",
 ]
 

@@ -94,9 +94,7 @@ def _newton(problem: Problem, start: Float[Array, "unknowns"]) -> Float[Array, "
         residual, slope = balance(values), jax.jacfwd(balance)(values)
         normal = slope.T @ slope
         ridge = _RIDGE * jnp.trace(normal) + 1e-30
-        move = -jnp.linalg.solve(
-            normal + jnp.diag(effort + ridge), slope.T @ residual + effort * values
-        )
+        move = -jnp.linalg.solve(normal + jnp.diag(effort + ridge), slope.T @ residual + effort * values)
         move = jnp.where(jnp.isfinite(move), move, 0.0)
         shrink = jnp.minimum(1.0, jnp.min(longest / jnp.maximum(jnp.abs(move), 1e-300)))
         return count + 1, values + shrink * move, jnp.max(jnp.abs(move))

@@ -112,7 +112,9 @@ class LinearModel:
         coordinates, over the largest of A [-]."""
         inside = np.isin(self.states, list(states))
         matrix = self.comparable_matrix()
-        between = max(np.abs(matrix[inside][:, ~inside]).max(initial=0.0), np.abs(matrix[~inside][:, inside]).max(initial=0.0))
+        between = max(
+            np.abs(matrix[inside][:, ~inside]).max(initial=0.0), np.abs(matrix[~inside][:, inside]).max(initial=0.0)
+        )
         return float(between / max(np.abs(matrix).max(), 1e-300))
 
     def comparable_matrix(self) -> np.ndarray:

@@ -42,9 +42,7 @@ class Matrices(NamedTuple):
     input: Float[Array, "12 inputs"]
 
 
-def differentiate(
-    plant: TetheredAirship, state: Float[Array, "12"], inputs: Float[Array, "inputs"]
-) -> Matrices:
+def differentiate(plant: TetheredAirship, state: Float[Array, "12"], inputs: Float[Array, "inputs"]) -> Matrices:
     """Return A and U by exact differentiation, not compiled.
 
     Parameters

@@ -146,9 +146,11 @@ def find_modes(model: LinearModel) -> Modes:
         name = mode_name(slots[ordered[0]], slots[ordered[1]] if len(places) > 1 else None, share)
         group = spectrum.groups[group_of[place]]
         shape = dict(zip(states, spectrum.vectors[:, place].tolist(), strict=True))
-        found.append(_mode(name, complex(value), places, share, shape, size)._replace(
-            multiplicity=len(group), defective=spectrum.blocks[group_of[place]] < len(group)
-        ))
+        found.append(
+            _mode(name, complex(value), places, share, shape, size)._replace(
+                multiplicity=len(group), defective=spectrum.blocks[group_of[place]] < len(group)
+            )
+        )
     names = unique(_split_names(found))
     return Modes(tuple(mode._replace(name=name) for mode, name in zip(found, names, strict=True)), spectrum)
 

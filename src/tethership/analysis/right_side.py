@@ -39,9 +39,7 @@ def unpack_inputs(
     return dataclasses.replace(plant, environment=environment), command, inputs[after + 6 :]
 
 
-def right_side(
-    plant: TetheredAirship, state: Float[Array, "12"], inputs: Float[Array, "inputs"]
-) -> Float[Array, "12"]:
+def right_side(plant: TetheredAirship, state: Float[Array, "12"], inputs: Float[Array, "inputs"]) -> Float[Array, "12"]:
     """Return the rates of the twelve states [SI per second] at t = 0.
 
     Parameters

@@ -122,9 +122,7 @@ def _stiffness(plant: TetheredAirship, state: State) -> Float[Array, "12 12"]:
 
 
 @eqx.filter_jit
-def semi_analytic(
-    plant: TetheredAirship, state: Float[Array, "12"], inputs: Float[Array, "inputs"]
-) -> SemiAnalytic:
+def semi_analytic(plant: TetheredAirship, state: Float[Array, "12"], inputs: Float[Array, "inputs"]) -> SemiAnalytic:
     """Return mass, stiffness and sensitivity matrices at an equilibrium.
 
     Parameters

@@ -163,11 +163,16 @@ def _relevant(config: ScenarioConfig) -> dict[str, Parameter]:
         and not (".direction." in name and parameter.value != 0.0)
     }
     closing = known.pop(f"{COEFFICIENTS}5", None)
-    return known if closing is None else known | {
-        name: parameter._replace(leaves=(*parameter.leaves, closing.leaves[0]))
-        for name, parameter in known.items()
-        if name.startswith(COEFFICIENTS)
-    }
+    return (
+        known
+        if closing is None
+        else known
+        | {
+            name: parameter._replace(leaves=(*parameter.leaves, closing.leaves[0]))
+            for name, parameter in known.items()
+            if name.startswith(COEFFICIENTS)
+        }
+    )
 
 
 def _group(spectrum: Spectrum, eigenvalue: complex) -> tuple[tuple[int, ...], np.ndarray]:

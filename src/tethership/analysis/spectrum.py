@@ -77,10 +77,10 @@ def analyse(matrix: np.ndarray, error: float = ROUNDING) -> Spectrum:
 
 
 def _grouped(values: np.ndarray, slack: np.ndarray) -> tuple[tuple[int, ...], ...]:
-    """Return the groups of eigenvalues that rounding cannot tell apart (single linkage)."""
+    """Return the groups of eigenvalues that rounding cannot tell apart: closer than the slack of both."""
     groups: list[set[int]] = []
     for i in range(len(values)):
-        near = {j for j in range(i) if abs(values[i] - values[j]) <= max(slack[i], slack[j])}
+        near = {j for j in range(i) if abs(values[i] - values[j]) <= min(slack[i], slack[j])}
         merged = {i}.union(*(group for group in groups if group & near))
         groups = [group for group in groups if not group & near] + [merged]
     return tuple(tuple(sorted(group)) for group in sorted(groups, key=min))

@@ -173,9 +173,7 @@ def sweep(scenario: Scenario, *axes: Axis) -> Sweep:
     fine, per_line = _filled(grid, shape[-1], fill)
     question = ask(scenario)
     reference, start = _reference(scenario, parameters, grid, question)
-    batch = solve_points(
-        scenario.config.as_arrays(), [p.places for p in parameters], question, fine, reference, start
-    )
+    batch = solve_points(scenario.config.as_arrays(), [p.places for p in parameters], question, fine, reference, start)
     path = _path(batch)
     orders, lines = _followed(path, per_line, shape[:-1])
     ordered = np.take_along_axis(path.values, orders, axis=1)

@@ -60,12 +60,22 @@ def chosen_scenario(name: str, wind: float | None, formulation: str | None, chan
     ConfigError
         As `load_scenario`, or a change that is not `key=value`.
     """
-    values: dict[str, Any] = dict(_change(text) for text in changes or [])
+    values = parsed_changes(changes)
     if wind is not None:
         values["wind.speed"] = wind
     if formulation is not None:
         values["formulation"] = formulation
     return load_scenario(name, values)
+
+
+def parsed_changes(changes: list[str] | None) -> dict[str, Any]:
+    """Return dotted names and values of `key=value` pairs."""
+    return dict(_change(text) for text in changes or [])
+
+
+def pair(value: complex) -> list[float]:
+    """Return a complex number as [real, imaginary]."""
+    return [float(value.real), float(value.imag)]
 
 
 def _change(text: str) -> tuple[str, Any]:
@@ -100,6 +110,8 @@ def _plain(value: Any) -> Any:
         return [_plain(item) for item in value]
     if hasattr(value, "tolist"):
         return _plain(value.tolist())
+    if isinstance(value, complex):
+        return _plain(pair(value))
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     return value

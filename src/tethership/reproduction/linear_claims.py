@@ -141,7 +141,9 @@ def claim_1(changes: Changes) -> Claim:
         and _growth(roll) < 0,
         "the directional mode is real, slow and not null": _real(heading) and not heading.null if heading else False,
     }
-    return Claim("L1", "untethered, nine states: the classical spectrum of an airship", parts, {"modes": _listed(modes)})
+    return Claim(
+        "L1", "untethered, nine states: the classical spectrum of an airship", parts, {"modes": _listed(modes)}
+    )
 
 
 def claim_2(changes: Changes) -> Claim:
@@ -157,7 +159,9 @@ def claim_2(changes: Changes) -> Claim:
         "it is ρ(altitude) that does it: null in air of constant density": bool(still and still.null),
     }
     numbers = {"modes": _listed(modes), "vertical at constant density": _pair(still.eigenvalue) if still else None}
-    return Claim("L2", "twelve states add null north and east and a slow, mildly unstable vertical mode", parts, numbers)
+    return Claim(
+        "L2", "twelve states add null north and east and a slow, mildly unstable vertical mode", parts, numbers
+    )
 
 
 def _density() -> dict[str, Any]:
@@ -175,7 +179,7 @@ def claim_3(changes: Changes) -> Claim:
     found = _cable_sweep(changes, "docking", "cables.nose", heavy=False)
     surge, north, east, vertical = (found.track(name) for name in ("surge", "north", "east", "vertical"))
     parts = {
-        "surge becomes less stable": _rises(surge.real),
+        "surge becomes less stable (while real)": _rises(surge[surge.imag == 0].real),
         "north becomes stable": north[-1].real < -1e-3,
         "surge and north stay real up to 6 g/m": _met(found, "coalesce", "surge", "north") is None,
         "east becomes slowly unstable, real": 0 < east[-1].real < SLOW and east[-1].imag == 0,
@@ -186,7 +190,9 @@ def claim_3(changes: Changes) -> Claim:
         "surge and north coalesce at diameter [m]": _met(found, "coalesce", "surge", "north"),
         "tension at 6 g/m [N]": float(found.tension[-1, 0]),
     }
-    return Claim("L3", "a light cable: surge less stable, north stable, east slowly unstable, vertical stabler", parts, numbers)
+    return Claim(
+        "L3", "a light cable: surge less stable, north stable, east slowly unstable, vertical stabler", parts, numbers
+    )
 
 
 def claim_4(changes: Changes) -> Claim:
@@ -201,7 +207,8 @@ def claim_4(changes: Changes) -> Claim:
         "surge and north coalesce to an oscillation": bool(coupled[-1]),
         "it is stable": bool(np.all(surge.real[coupled] < 0)),
         "its damping falls": _falls(damping[coupled]),
-        "the directional mode is real and ever more stable": bool(np.all(heading.imag == 0)) and _falls(heading.real)
+        "the directional mode is real and ever more stable": bool(np.all(heading.imag == 0))
+        and _falls(heading.real)
         and heading[-1].real < 0,
         "vertical is ever more stable": _falls(vertical.real) and vertical[-1].real < 0,
         "east is real and ever more unstable": bool(np.all(east.imag == 0)) and _rises(east.real) and east[-1].real > 0,
@@ -209,10 +216,15 @@ def claim_4(changes: Changes) -> Claim:
     where = _met(light, "coalesce", "surge", "north") or _met(found, "coalesce", "surge", "north")
     numbers = {
         **_ends(found, "surge", "heading", "east", "vertical"),
+        "heading and east with their names exchanged": bool(np.all(heading.imag == 0) and np.all(east.imag == 0))
+        and _falls(east.real)
+        and _rises(heading.real),
         "surge and north coalesce at diameter [m]": where,
         "damping of surge–north, first and last": [float(damping[coupled][0]), float(damping[coupled][-1])],
     }
-    return Claim("L4", "a heavier cable: surge and north coalesce; heading and vertical stabler, east less", parts, numbers)
+    return Claim(
+        "L4", "a heavier cable: surge and north coalesce; heading and vertical stabler, east less", parts, numbers
+    )
 
 
 def claim_5(changes: Changes) -> Claim:
@@ -242,10 +254,15 @@ def claim_5(changes: Changes) -> Claim:
     }
     numbers = {
         "coalescence of surge and north at diameter [m], one and two cables": [single, double],
+        "light: heading and east with their names exchanged": bool(
+            heading[-1].imag == 0 and east[-1].imag == 0 and heading[-1].real < 0 < east[-1].real
+        ),
         **{f"light {name}": ends for name, ends in _ends(light, "heading", "east").items()},
         **{f"heavy {name}": ends for name, ends in _ends(heavy, "heading", "east", "vertical").items()},
     }
-    return Claim("L5", "two side cables: the opposite of one in heading and east, then a second oscillation", parts, numbers)
+    return Claim(
+        "L5", "two side cables: the opposite of one in heading and east, then a second oscillation", parts, numbers
+    )
 
 
 def claim_6(changes: Changes) -> Claim:
@@ -313,7 +330,9 @@ def claim_8(changes: Changes) -> Claim:
         parts[f"{label} is more than three times as sensitive above 0.9"] = high > 3.0 * low
         numbers[f"sensitivity of {label} below and above 0.9 [1/s]"] = [low, high]
         numbers[f"damping of {label}, first and last"] = [float(damping[0]), float(damping[-1])]
-    return Claim("L8", "more elongation: pendulum and surge–north faster, less damped; sensitive above 0.9", parts, numbers)
+    return Claim(
+        "L8", "more elongation: pendulum and surge–north faster, less damped; sensitive above 0.9", parts, numbers
+    )
 
 
 def claim_9(changes: Changes) -> Claim:

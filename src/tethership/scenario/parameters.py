@@ -138,14 +138,23 @@ def find_parameter(known: Mapping[str, Parameter], name: str, scenario_name: str
     full = TIED.get(full, full)
     if full in known:
         return known[full]
-    last = full.rsplit(".", 1)[-1]
-    near = difflib.get_close_matches(full, known, n=3, cutoff=0.5)
-    near += [other for other in known if other.rsplit(".", 1)[-1] == last and other not in near][: 3 - len(near)]
+    near = _nearest(full, known)
     hint = f"; nearest: {', '.join(near)}" if near else ""
     raise ConfigError(
         f"scenario {scenario_name} has no number {name!r}{hint}. A dotted name of its file is meant, "
         "e.g. wind.speed, cables.nose.length or vehicle.fins.*.area"
     )
+
+
+def _nearest(name: str, known: Iterable[str]) -> list[str]:
+    """Return up to three known names like one: as a whole, or in their parts."""
+    names = list(known)
+    near = difflib.get_close_matches(name, names, n=3, cutoff=0.5)
+    words = {word for other in names for word in other.split(".")}
+    alike = [set(difflib.get_close_matches(word, words, n=2, cutoff=0.7)) for word in name.split(".")]
+    shared = {other: sum(bool(words & set(other.split("."))) for words in alike) for other in names}
+    near += [other for other in sorted(names, key=lambda o: -shared[o]) if shared[other] and other not in near]
+    return near[:3]
 
 
 def with_values(config: ScenarioConfig, parameters: Iterable[Parameter], values: Iterable[Any]) -> ScenarioConfig:

@@ -68,7 +68,7 @@ def unit_registry() -> pint.UnitRegistry:
     return pint.UnitRegistry()
 
 
-def _converted(value: float, unit: str, si_unit: str) -> float:
+def converted(value: float, unit: str, si_unit: str) -> float:
     """Return a number in the SI unit, or say why it is none."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ValueError(f"the value is {value!r}, not a number")
@@ -139,7 +139,7 @@ class Quantity:
 
     def _nested(self, value: Any, unit: str, level: int) -> Any:
         if level == 0:
-            return _converted(value, unit, self.unit)
+            return converted(value, unit, self.unit)
         if not isinstance(value, list | tuple):
             raise ValueError(f"the value is {value!r}, not a list; write {self.form}")
         return tuple(self._nested(item, unit, level - 1) for item in value)

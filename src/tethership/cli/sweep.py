@@ -1,0 +1,248 @@
+"""`tethership sweep`: root loci along parameters, or Figures 6–11 of the paper."""
+
+import json as json_module
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+import typer
+
+from tethership.cli.common import (
+    NO_ANSWER,
+    NUMBER_WITH_UNIT,
+    FormulationOption,
+    JsonOption,
+    OutOption,
+    ScenarioArgument,
+    SetOption,
+    WindOption,
+    chosen_scenario,
+    pair,
+    parsed_changes,
+    print_json,
+    stage,
+    writable_folder,
+)
+from tethership.errors import ConfigError
+from tethership.scenario import Scenario
+
+if TYPE_CHECKING:
+    from tethership.analysis import Sweep
+
+EXAMPLE = "Example: tethership sweep --over wind=6:12:13 --out loci"
+
+MEETINGS = ("coalesce", "split", "cross")
+"""Events of the contract; passages of the imaginary axis are told under `stability`."""
+
+
+def sweep(
+    scenario: ScenarioArgument = "docking",
+    over: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=FROM:TO:POINTS",
+            help="What to vary; NAME=[v1,v2] lists values; commas move several together; repeat for a grid.",
+        ),
+    ] = None,
+    figure: Annotated[int | None, typer.Option(help="Redraw figure 6 to 11 of the paper instead.")] = None,
+    wind: WindOption = None,
+    formulation: FormulationOption = None,
+    changes: SetOption = None,
+    out: OutOption = Path("out"),
+    json: JsonOption = False,
+) -> None:
+    """Trim and linearise along any parameters, follow every mode by name, draw the root locus.
+
+    Writes a picture and an interactive page into --out. With --figure and no --formulation, both formulations.
+    """
+    if (over is None) == (figure is None):
+        raise ConfigError("name what to vary, --over wind=6:12:13, or a figure of the paper, --figure 7 (not both)")
+    writable_folder(out)
+    if figure is not None:
+        if scenario != "docking":
+            raise ConfigError(f"--figure has its own scenarios; leave out {scenario!r}, or change values with --set")
+        result, found = _figures(figure, formulation, _set(wind, changes), out)
+    else:
+        loaded = chosen_scenario(scenario, wind, formulation, changes)
+        result, found = _swept(loaded, over or [], out)
+    if json:
+        print_json(result)
+    else:
+        _print(result, found)
+    if not any(one.trimmed.any() for one in found):
+        raise typer.Exit(NO_ANSWER)
+
+
+def _set(wind: float | None, changes: list[str] | None) -> dict[str, Any]:
+    """Return the changes of --set and --wind."""
+    return parsed_changes(changes) | ({} if wind is None else {"wind.speed": wind})
+
+
+def _swept(scenario: Scenario, over: list[str], out: Path) -> tuple[dict[str, Any], list["Sweep"]]:
+    """Return the result of a sweep; writes root_locus.png and root_locus.html."""
+    from tethership.analysis import sweep as compute
+
+    axes = [_axis(scenario, text) for text in over]
+    with stage("sweep"):
+        found = compute(scenario, *axes)
+    head = {"wind": scenario.config.wind.speed, "formulation": scenario.formulation}
+    result = head | summary(found)
+    with stage("draw"):
+        from tethership.view.interactive import interactive_root_locus, write_page
+        from tethership.view.root_locus import plot_root_locus
+
+        axes_drawn = plot_root_locus(found)
+        axes_drawn.set_title(f"{scenario.config.title} · {scenario.formulation} formulation", fontsize=10)
+        axes_drawn.figure.savefig(out / "root_locus.png", dpi=120)  # pyright: ignore[reportAttributeAccessIssue]
+        write_page(interactive_root_locus(found, scenario.config.title), out / "root_locus.html")
+    result["files"] = [str(out / "root_locus.png"), str(out / "root_locus.html")]
+    return result, [found]
+
+
+def _figures(
+    number: int, formulation: str | None, changes: dict[str, Any], out: Path
+) -> tuple[dict[str, Any], list["Sweep"]]:
+    """Return one figure of the paper in one formulation or both; writes figure_NN_FORMULATION.png and .html."""
+    from tethership.reproduction import linear_figure
+
+    files, shown, sweeps = [], {}, []
+    for name in ("consistent", "published") if formulation is None else (formulation,):
+        with stage(f"figure {number}, {name}"):
+            drawn = linear_figure(number, name, changes)
+        with stage("draw"):
+            from tethership.view.interactive import interactive_linear_figure, write_page
+            from tethership.view.root_locus import plot_linear_figure
+
+            stem = out / f"figure_{number:02d}_{name}"
+            plot_linear_figure(drawn).savefig(f"{stem}.png", dpi=120)
+            write_page(interactive_linear_figure(drawn), Path(f"{stem}.html"))
+        files += [f"{stem}.png", f"{stem}.html"]
+        sweeps += [panel.sweep for panel in drawn.panels]
+        shown[name] = [{"title": panel.title, **summary(panel.sweep)} for panel in drawn.panels]
+    first = next(iter(shown))
+    top = {key: value for key, value in shown[first][0].items() if key != "title"}
+    return {"figure": number, "formulation": first, **top, "formulations": shown, "files": files}, sweeps
+
+
+def summary(found: "Sweep") -> dict[str, Any]:
+    """Return the keys that scripts may rely on, SI."""
+    first = next(iter(found.values))
+    events = [
+        {
+            "kind": event.kind,
+            "event": event.kind,
+            "value": event.at[first],
+            "at": event.at,
+            "modes": list(event.tracks),
+            "eigenvalue": pair(event.eigenvalue),
+        }
+        for event in found.events
+    ]
+    return {
+        "parameter": found.values[first],
+        "parameters": found.values,
+        "units": found.units,
+        "shape": list(found.shape),
+        "tracks": {name: [_root(value) for value in found.track(name)] for name in found.tracks},
+        "names": {
+            name: [row[index] or None for row in map(found.names_at, range(len(found.outcomes)))]
+            for index, name in enumerate(found.tracks)
+        },
+        "events": [event for event in events if event["kind"] in MEETINGS],
+        "stability": [event for event in events if event["kind"] not in MEETINGS],
+        "outcome": [outcome.name for outcome in found.outcomes],
+        "throttle": found.throttle,
+        "tension": found.tension,
+        "residual": np.abs(found.residual).max(axis=1),
+    }
+
+
+def _root(value: complex) -> list[float] | None:
+    return None if math.isnan(value.real) else pair(value)
+
+
+def _axis(scenario: Scenario, text: str) -> dict[str, np.ndarray]:
+    """Return the parameters of one --over and their values [SI]."""
+    axis: dict[str, np.ndarray] = {}
+    for part in _parts(text):
+        name, equals, values = part.partition("=")
+        if not equals or not name or not values:
+            raise ConfigError(f"--over {part!r} is no range; write --over name=from:to:points, e.g. wind=6:12:13")
+        axis[name.strip()] = _listed(part, values) if values.startswith("[") else _range(scenario, name.strip(), values)
+    return axis
+
+
+def _parts(text: str) -> list[str]:
+    """Return the parts between commas that are not inside brackets."""
+    parts, depth = [""], 0
+    for letter in text:
+        depth += {"[": 1, "]": -1}.get(letter, 0)
+        if letter == "," and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += letter
+    return parts
+
+
+def _listed(part: str, values: str) -> np.ndarray:
+    """Return the values of name=[v1,v2,…]."""
+    try:
+        return np.array(json_module.loads(values), dtype=float)
+    except (ValueError, TypeError) as error:
+        raise ConfigError(f"--over {part!r}: {values} is no list of numbers; write e.g. wind=[6,9,12]") from error
+
+
+def _range(scenario: Scenario, name: str, text: str) -> np.ndarray:
+    """Return the values of from:to:points, the ends with units if given."""
+    pieces = text.split(":")
+    if len(pieces) not in (2, 3):
+        raise ConfigError(f"--over {name}={text}: write from:to:points, e.g. {name}=6:12:13")
+    low, high = (_number(scenario, name, piece) for piece in pieces[:2])
+    try:
+        count = int(pieces[2]) if len(pieces) == 3 else 25
+    except ValueError as error:
+        raise ConfigError(f"--over {name}={text}: {pieces[2]!r} is no number of points") from error
+    if count < 1 or (low == high and count > 1):
+        raise ConfigError(f"--over {name}={text}: the range is empty; give two different ends and at least one point")
+    if high < low:
+        raise ConfigError(
+            f"--over {name}={text}: the range is reversed; give the lower end first, {name}={high:g}:{low:g}"
+        )
+    return np.linspace(low, high, count)
+
+
+def _number(scenario: Scenario, name: str, text: str) -> float:
+    """Return one end of a range [SI]; a unit is converted to that of the parameter."""
+    from tethership.scenario.parameters import find_parameter, list_parameters
+    from tethership.scenario.quantity import converted
+
+    parameter = find_parameter(list_parameters(scenario.config), name, scenario.name)
+    with_unit = NUMBER_WITH_UNIT.fullmatch(text.strip())
+    try:
+        if with_unit is not None:
+            return converted(float(with_unit["number"]), with_unit["unit"], parameter.unit)
+        value = float(text)
+    except ValueError as error:
+        raise ConfigError(f"--over {name}: {text!r} is no number for an end ({error})") from error
+    if not math.isfinite(value):
+        raise ConfigError(f"--over {name}: the end {text!r} is not a finite number")
+    return value
+
+
+def _print(result: dict[str, Any], found: list["Sweep"]) -> None:
+    """Print what happened along the sweep and the files."""
+    for one in found:
+        first, last = ({name: float(v[i]) for name, v in one.values.items()} for i in (0, -1))
+        words = ", ".join(f"{name} {first[name]:.4g} to {last[name]:.4g} {one.units[name]}" for name in one.values)
+        typer.echo(f"{words}: {int(one.trimmed.sum())} of {len(one.outcomes)} points in trim")
+        for outcome, value, throttle in zip(one.outcomes, next(iter(one.values.values())), one.throttle, strict=True):
+            if outcome.name != "converged":
+                most = np.abs(throttle).max(initial=0.0)
+                typer.echo(f"  {value:<10.4g} {outcome.name}: largest |throttle| {most:.2f} of nominal")
+        for event in one.events:
+            place = ", ".join(f"{name} = {value:.4g}" for name, value in event.at.items())
+            verb = {"unstable": "becomes unstable", "stable": "becomes stable"}.get(event.kind, event.kind)
+            typer.echo(f"  {' and '.join(event.tracks)} {verb} at {place} (λ = {event.eigenvalue:.4f} 1/s)")
+    for path in result["files"]:
+        typer.echo(f"wrote {path}")

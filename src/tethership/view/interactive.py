@@ -1,0 +1,144 @@
+"""Root loci to be explored in a browser: one self-contained page, hover tells parameter, eigenvalue and mode.
+
+Depends on: plotly, view.
+"""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+from plotly.subplots import make_subplots
+
+from tethership.analysis.sweep import Sweep
+from tethership.errors import ConfigError
+from tethership.reproduction import LinearFigure, Panel
+from tethership.view import style
+from tethership.view.root_locus import SLOWEST, display
+
+HOVER = "<b>%{customdata[0]}</b><br>%{customdata[1]}<br>λ = %{customdata[2]} 1/s<extra>%{customdata[3]}</extra>"
+
+
+def interactive_root_locus(found: Sweep, title: str = "Root locus", parameter: str | None = None) -> go.Figure:
+    """Return a sweep as a plotly figure.
+
+    Parameters
+    ----------
+    found : Sweep
+        From `sweep`.
+    title : str
+        Above the plot.
+    parameter : str, optional
+        Which parameter colours the dots; the first if not given.
+    """
+    name = next(iter(found.values)) if parameter is None else parameter
+    return _assembled([Panel(title, found, name, None, None, slow=False)], title)
+
+
+def interactive_linear_figure(figure: LinearFigure) -> go.Figure:
+    """Return one of Figures 6–11 of the paper as a plotly figure."""
+    title = f"Figure {figure.number} of the paper, computed: {figure.title} · {figure.formulation} formulation"
+    return _assembled(list(figure.panels), title)
+
+
+def write_page(figure: go.Figure, path: Path) -> None:
+    """Write a page that works from disk without a network; raises ConfigError where that cannot be."""
+    try:
+        figure.write_html(path, include_plotlyjs=True, full_html=True)
+    except OSError as error:
+        raise ConfigError(
+            f"cannot write {path}: {error.strerror or error}; choose another folder with --out"
+        ) from error
+
+
+def _assembled(panels: list[Panel], title: str) -> go.Figure:
+    drawn = make_subplots(rows=1, cols=len(panels), subplot_titles=[panel.title for panel in panels])
+    for column, panel in enumerate(panels, start=1):
+        for trace in _traces(panel, column, len(panels)):
+            drawn.add_trace(trace, row=1, col=column)
+        drawn.update_xaxes(title_text="Re λ [1/s]", zeroline=True, zerolinecolor=style.INK, row=1, col=column)
+        drawn.update_yaxes(title_text="Im λ [rad/s]", zeroline=True, zerolinecolor=style.INK, row=1, col=column)
+        if panel.slow:
+            limits = _slow_limits(panel)
+            drawn.update_xaxes(range=limits[0], row=1, col=column)
+            drawn.update_yaxes(range=limits[1], row=1, col=column)
+    drawn.update_layout(title=title, template="plotly_white", showlegend=False, hovermode="closest")
+    return drawn
+
+
+def _slow_limits(panel: Panel) -> tuple[list[float], list[float]]:
+    roots = np.concatenate([panel.sweep.track(track)[panel.sweep.trimmed] for track in panel.sweep.tracks])
+    roots = roots[np.abs(roots) < SLOWEST]
+    low, high = roots.real.min(initial=-0.01), roots.real.max(initial=0.01)
+    reach = np.abs(roots.imag).max(initial=0.01)
+    return [1.2 * low - 0.01, 1.2 * high + 0.01], [-1.15 * reach, 1.15 * reach]
+
+
+def _traces(panel: Panel, column: int, columns: int) -> list[go.Scatter]:
+    found = panel.sweep
+    points = np.flatnonzero(found.trimmed)
+    label, unit, factor = display(panel.parameter, found.units[panel.parameter])
+    value = found.values[panel.parameter] * factor
+    names = [found.names_at(int(point)) for point in points]
+    traces = []
+    for index, track in enumerate(found.tracks):
+        roots = found.track(track)[points]
+        notes = [_note(found, int(point)) for point in points]
+        texts = [f"{root.real:.5f} {root.imag:+.5f}i" for root in roots]
+        data = list(zip([row[index] for row in names], notes, texts, [track] * len(points), strict=True))
+        marker: dict[str, Any] = {"size": 7, "color": value[points], "colorscale": "Viridis"}
+        if index == 0 and len(value) > 1:
+            marker |= {
+                "showscale": True,
+                "colorbar": {"title": f"{label} [{unit}]" if unit else label, "x": column / columns - 0.01, "len": 0.9},
+            }
+        traces.append(
+            go.Scatter(
+                x=roots.real,
+                y=roots.imag,
+                mode="lines+markers",
+                marker=marker,
+                customdata=data,
+                hovertemplate=HOVER,
+                line={"color": style.GUIDE, "width": 1},
+                name=track,
+            )
+        )
+    return traces + _marks(panel)
+
+
+def _note(found: Sweep, point: int) -> str:
+    """Return the parameters of a point in words."""
+    parts = []
+    for name, values in found.values.items():
+        label, unit, factor = display(name, found.units[name])
+        parts.append(f"{label} = {values[point] * factor:.5g} {unit}".rstrip())
+    return "<br>".join(parts)
+
+
+def _marks(panel: Panel) -> list[go.Scatter]:
+    """Return the stars of the reference and the circles of the untethered ship."""
+    found, marks = panel.sweep, []
+    if panel.star is not None and found.trimmed[panel.star] and len(found.outcomes) > 1:
+        roots = np.array([found.track(track)[panel.star] for track in found.tracks])
+        marker = {"symbol": "star", "size": 13, "color": style.END}
+        marks.append(
+            go.Scatter(x=roots.real, y=roots.imag, mode="markers", marker=marker, hoverinfo="skip", name="reference")
+        )
+    if panel.free is not None:
+        modes = list(panel.free.listed())
+        roots = np.array([sign(mode.eigenvalue) for mode in modes for sign in (complex, np.conj)])
+        names = [mode.name for mode in modes for _ in range(2)]
+        marker = {"symbol": "circle-open", "size": 12, "color": style.INK}
+        marks.append(
+            go.Scatter(
+                x=roots.real,
+                y=roots.imag,
+                mode="markers",
+                marker=marker,
+                text=names,
+                name="untethered",
+                hovertemplate="<b>%{text}</b><br>untethered<br>λ = %{x:.5f} %{y:+.5f}i 1/s<extra></extra>",
+            )
+        )
+    return marks
