@@ -8,7 +8,7 @@ shorter ones. The batch is the last axis.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -42,36 +42,36 @@ _RIDGE = 1e-14
 
 
 class Batch(NamedTuple):
-    """What is known of a batch of points; the last axis is the batch.
+    """What is known of a batch of points: JAX arrays with the batch last, or numpy arrays with the points first.
 
     Attributes
     ----------
-    unknowns : Array
+    unknowns : array
         Solution in the unknowns' units.
-    state : Array
+    state : array
         Twelve states.
-    throttle : Array
+    throttle : array
         δ [-], not clipped.
-    tension : Array
+    tension : array
         Tension of each cable [N].
-    residual : Array
+    residual : array
         Force and moment left over with throttles not clipped [N, N m].
-    limit : Array
+    limit : array
         Largest residual of an equilibrium [N, N m].
-    matrix : Array
+    matrix : array
         A [SI], (12, 12).
-    comparable : Array
+    comparable : array
         Matrix to comparable coordinates, (12, 12).
     """
 
-    unknowns: Array
-    state: Array
-    throttle: Array
-    tension: Array
-    residual: Array
-    limit: Array
-    matrix: Array
-    comparable: Array
+    unknowns: Any
+    state: Any
+    throttle: Any
+    tension: Any
+    residual: Any
+    limit: Any
+    matrix: Any
+    comparable: Any
 
 
 def _newton(problem: Problem, start: Float[Array, "unknowns"]) -> Float[Array, "unknowns"]:
@@ -220,7 +220,9 @@ def _in_batches(
     parts = []
     for first in range(0, len(values), BATCH):
         rows = np.minimum(np.arange(first, first + BATCH), len(values) - 1)
-        parts.append((rows, _solve_batch(config, places, question, values[rows].T, starts[rows].T)))
+        parts.append(
+            (rows, _solve_batch(config, places, question, jnp.asarray(values[rows].T), jnp.asarray(starts[rows].T)))
+        )
     fields = []
     for name in Batch._fields:
         arrays = [np.moveaxis(np.asarray(getattr(part, name)), -1, 0) for _, part in parts]

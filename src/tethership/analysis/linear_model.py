@@ -108,8 +108,12 @@ class LinearModel:
         return self._part(LATERAL)
 
     def coupling(self, states: Sequence[str]) -> float:
-        """Return how strongly some states are coupled with the others: largest entry between them, comparable
-        coordinates, over the largest of A [-]."""
+        """Return how strongly some states are coupled with the others [-].
+
+        Notes
+        -----
+        The largest entry of A between them over its largest at all, in comparable coordinates.
+        """
         inside = np.isin(self.states, list(states))
         matrix = self.comparable_matrix()
         between = max(
@@ -133,8 +137,8 @@ class LinearModel:
         strength = self.coupling(kept)
         if strength > 1e-6:
             raise ConfigError(
-                f"the point is not symmetric: {', '.join(kept)} are coupled with the other states ({strength:.1e} of the "
-                "largest entry of A); use the whole model, or select() if the coupling may be neglected"
+                f"the point is not symmetric: {', '.join(kept)} are coupled with the other states ({strength:.1e} of "
+                "the largest entry of A); use the whole model, or select() if the coupling may be neglected"
             )
         return self.select(kept)
 
@@ -143,7 +147,7 @@ class LinearModel:
         import control
 
         count, width = len(self.states), len(self.inputs)
-        return control.ss(
+        return control.StateSpace(
             self.A,
             self.U,
             np.eye(count),

@@ -76,8 +76,10 @@ def unique(names: Sequence[str]) -> list[str]:
 
 
 def track_names(states: Sequence[str]) -> list[str]:
-    """Return one name for every eigenvalue, in the order of `slots_of`: an oscillation has two, e.g. pendulum and
-    pendulum 2."""
+    """Return one name for every eigenvalue, in the order of `slots_of`.
+
+    An oscillation has two, e.g. pendulum and pendulum 2.
+    """
     return unique([slot.name for slot in slots_of(states)])
 
 

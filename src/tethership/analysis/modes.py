@@ -10,7 +10,7 @@ import numpy as np
 
 from tethership.analysis.linear_model import LinearModel
 from tethership.analysis.mode_names import assign, mode_name, slots_of, unique
-from tethership.analysis.spectrum import NULL, Spectrum, analyse
+from tethership.analysis.spectrum import NULL, Complex, Spectrum, analyse
 from tethership.analysis.tracking import partners_of
 from tethership.errors import ConfigError, suggestion
 
@@ -86,7 +86,7 @@ class Modes(NamedTuple):
     spectrum: Spectrum
 
     @property
-    def eigenvalues(self) -> np.ndarray:
+    def eigenvalues(self) -> Complex:
         """All eigenvalues [1/s], complex."""
         return self.spectrum.eigenvalues
 

@@ -104,17 +104,15 @@ class Sensitivities(NamedTuple):
         )
 
 
-def sensitivities(
-    scenario: Scenario, mode: str | Sequence[str], point: TrimPoint | None = None
-) -> Sensitivities | tuple[Sensitivities, ...]:
+def sensitivities(scenario: Scenario, mode: str, point: TrimPoint | None = None) -> Sensitivities:
     """Return how every number of vehicle and scenario moves a mode, ranked.
 
     Parameters
     ----------
     scenario : Scenario
         From `load_scenario`.
-    mode : str or sequence of str
-        Name of a mode of the trimmed ship (see `LinearModel.modes`), or several.
+    mode : str
+        Name of a mode of the trimmed ship (see `LinearModel.modes`).
     point : TrimPoint, optional
         Its trim; computed if not given.
 
@@ -125,13 +123,20 @@ def sensitivities(
     ConfigError
         There is no such mode.
     """
+    return rank_sensitivities(scenario, [mode], point)[0]
+
+
+def rank_sensitivities(
+    scenario: Scenario, modes: Sequence[str], point: TrimPoint | None = None
+) -> tuple[Sensitivities, ...]:
+    """Return the tables of several modes; arguments and errors as in `sensitivities`."""
     found = trim(scenario) if point is None else point
     if found.outcome is TrimOutcome.no_equilibrium:
         raise SolveError(f"{found.outcome.value} Without it there are no modes.")
     model = linearize(scenario, found)
-    modes = find_modes(model)
+    named = find_modes(model)
     spectrum = analyse(model.comparable_matrix(), CLUSTER)
-    chosen = [modes.find(name) for name in ([mode] if isinstance(mode, str) else mode)]
+    chosen = [named.find(name) for name in modes]
     parameters = _relevant(scenario.config)
     slopes, exists = matrix_slopes(scenario, list(parameters.values()))
     to_comparable, back = model.comparable, np.linalg.inv(model.comparable)
@@ -144,7 +149,7 @@ def sensitivities(
         rows.sort(key=lambda row: (row.shift is None, -abs(row.shift or 0.0), row.parameter))
         mean = complex(spectrum.eigenvalues[list(group)].mean())
         tables.append(Sensitivities(one.name, mean, len(group), tuple(rows)))
-    return tables[0] if isinstance(mode, str) else tuple(tables)
+    return tuple(tables)
 
 
 def _relevant(config: ScenarioConfig) -> dict[str, Parameter]:
@@ -198,8 +203,13 @@ def _rows(
 
 
 def ordinary_step(parameter: Parameter, length: float) -> float:
-    """Return a change of ordinary size: 1 % of the value; for zeros 1 % of the hull's length [m] for lengths, else
-    0.01 of the unit; for angles 0.01 rad; for a coefficient of the hull's profile 0.01."""
+    """Return a change of ordinary size, in the unit of the parameter.
+
+    Notes
+    -----
+    1 % of the value. Where that is zero 1 % of the hull's length for lengths, else 0.01 of the unit; for angles
+    0.01 rad; for a coefficient of the hull's profile 0.01.
+    """
     if parameter.value != 0.0 and parameter.unit != "rad" and not parameter.name.startswith(COEFFICIENTS):
         return 0.01 * abs(parameter.value)
     return 0.01 * (length if parameter.unit == "m" else 1.0)
@@ -242,8 +252,10 @@ def _retrimmed(
     current: Float[Array, "leaves"],
     values: Float[Array, "unknowns"],
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return dA/dp (12, 12, leaves), what is left of the balance's derivative after retrimming (6, leaves), and that
-    derivative itself."""
+    """Return dA/dp (12, 12, leaves) along the trims.
+
+    Then what is left of the balance's derivative after retrimming (6, leaves), and that derivative itself.
+    """
     count = len(places)
     effort = np.diag(np.asarray(question.unknowns.effort))
     slope = np.asarray(_slopes(config, places, question, current, values, jnp.zeros(6))[1])[:, count:]

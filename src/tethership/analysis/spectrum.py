@@ -4,10 +4,14 @@ A free ship has a triple zero eigenvalue with only two eigenvectors. What single
 projector on the group's invariant subspace is well defined, and so are its mean eigenvalue and its participation.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.linalg
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 ROUNDING = 1e3 * np.finfo(float).eps
 """Relative error of A that rounding and the trim may leave."""
@@ -26,8 +30,8 @@ class Spectrum(NamedTuple):
     vectors : ndarray
         Right eigenvectors as columns, largest entry 1, shape (n, n).
     participation : ndarray
-        |share| of each state (rows) in each eigenvalue (columns) [-], shape (n, n): |w_k v_k|, for a group the diagonal of
-        its projector over its size.
+        |share| of each state (rows) in each eigenvalue (columns) [-], shape (n, n): |w_k v_k|, for a group the diagonal
+        of its projector over its size.
     groups : tuple
         Groups of places, one for every distinct eigenvalue.
     projectors : tuple of ndarray
@@ -36,15 +40,15 @@ class Spectrum(NamedTuple):
         Number of eigenvectors of each group: fewer than its size where it is defective.
     """
 
-    eigenvalues: np.ndarray
-    vectors: np.ndarray
-    participation: np.ndarray
+    eigenvalues: Complex
+    vectors: Complex
+    participation: Real
     groups: tuple[tuple[int, ...], ...]
-    projectors: tuple[np.ndarray, ...]
+    projectors: tuple[Complex, ...]
     blocks: tuple[int, ...]
 
 
-def analyse(matrix: np.ndarray, error: float = ROUNDING) -> Spectrum:
+def analyse(matrix: Real, error: float = ROUNDING) -> Spectrum:
     """Return the spectrum of a real matrix, fastest first.
 
     Parameters
@@ -54,14 +58,16 @@ def analyse(matrix: np.ndarray, error: float = ROUNDING) -> Spectrum:
     error : float
         Relative error of A within which eigenvalues are not told apart.
     """
-    values, left, right = scipy.linalg.eig(matrix, left=True, right=True)
+    found: Any = scipy.linalg.eig(matrix, left=True, right=True)
+    values: Complex = np.asarray(found[0], dtype=np.complex128)
+    left, right = (np.asarray(part, dtype=np.complex128) for part in found[1:])
     order = np.lexsort((-values.imag, -values.real, -np.abs(values).round(9)))
     values, left, right = values[order], left[:, order], right[:, order]
     size = max(float(np.linalg.norm(matrix, 2)), 1e-300)
     cosine = np.abs(np.sum(left.conj() * right, axis=0))
     slack = np.minimum(error * size / np.maximum(cosine, 1e-300), 1e-3 * size)
     groups = _grouped(values, slack)
-    vectors = right / right[np.argmax(np.abs(right), axis=0), np.arange(len(values))]
+    vectors: Complex = right / right[np.argmax(np.abs(right), axis=0), np.arange(len(values))]
     participation = np.abs(left.conj() * right) / np.maximum(cosine, 1e-300)
     projectors, blocks = [], []
     for group in groups:
@@ -76,7 +82,7 @@ def analyse(matrix: np.ndarray, error: float = ROUNDING) -> Spectrum:
     return Spectrum(values, vectors, participation, groups, tuple(projectors), tuple(blocks))
 
 
-def _grouped(values: np.ndarray, slack: np.ndarray) -> tuple[tuple[int, ...], ...]:
+def _grouped(values: Complex, slack: Real) -> tuple[tuple[int, ...], ...]:
     """Return the groups of eigenvalues that rounding cannot tell apart: closer than the slack of both."""
     groups: list[set[int]] = []
     for i in range(len(values)):
@@ -86,7 +92,7 @@ def _grouped(values: np.ndarray, slack: np.ndarray) -> tuple[tuple[int, ...], ..
     return tuple(tuple(sorted(group)) for group in sorted(groups, key=min))
 
 
-def _projector(matrix: np.ndarray, values: np.ndarray, group: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
+def _projector(matrix: Real, values: Complex, group: tuple[int, ...]) -> tuple[Complex, Complex]:
     """Return the spectral projector of a group and the block of A on its subspace.
 
     Notes

@@ -16,6 +16,7 @@ from tethership.analysis.continuation import Batch, in_equilibrium, solve_points
 from tethership.analysis.equilibrium import solve
 from tethership.analysis.mode_names import assign, mode_name, slots_of, track_names
 from tethership.analysis.posing import Question, ask, posed
+from tethership.analysis.spectrum import Complex
 from tethership.analysis.tracking import (
     Event,
     Path,
@@ -100,7 +101,7 @@ class Sweep:
     values: dict[str, np.ndarray]
     shape: tuple[int, ...]
     tracks: tuple[str, ...]
-    eigenvalues: np.ndarray
+    eigenvalues: Complex
     outcomes: tuple[TrimOutcome, ...]
     states: np.ndarray
     throttle: np.ndarray
@@ -116,7 +117,7 @@ class Sweep:
         """Which points are in equilibrium with the thrust there is."""
         return np.array([outcome is TrimOutcome.converged for outcome in self.outcomes])
 
-    def track(self, name: str) -> np.ndarray:
+    def track(self, name: str) -> Complex:
         """Return one track's eigenvalues [1/s]; NaN where the point cannot be trimmed with the thrust there is.
 
         Raises
@@ -137,7 +138,7 @@ class Sweep:
         names = []
         for place in self.orders[point]:
             pair = sorted({int(chosen[place]), int(chosen[partner[place]])})
-            parts = dict(zip(STATE_NAMES, share[:, place].tolist(), strict=True))
+            parts: dict[str, float] = {s: float(x) for s, x in zip(STATE_NAMES, share[:, place], strict=True)}
             names.append(mode_name(slots[pair[0]], slots[pair[1]] if len(pair) > 1 else None, parts))
         return tuple(names)
 

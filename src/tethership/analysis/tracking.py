@@ -8,7 +8,7 @@ import numpy as np
 import scipy.optimize
 
 from tethership.analysis.mode_names import Slot, assign
-from tethership.analysis.spectrum import NULL
+from tethership.analysis.spectrum import NULL, Complex, Real
 
 
 class Path(NamedTuple):
@@ -26,8 +26,8 @@ class Path(NamedTuple):
         Points that have them.
     """
 
-    values: np.ndarray
-    vectors: np.ndarray
+    values: Complex
+    vectors: Complex
     partners: np.ndarray
     valid: np.ndarray
 
@@ -45,13 +45,13 @@ def eigen_path(matrices: np.ndarray, valid: np.ndarray) -> Path:
     return Path(values, vectors.astype(complex), partners_of(values), valid)
 
 
-def partners_of(values: np.ndarray) -> np.ndarray:
+def partners_of(values: Complex) -> np.ndarray:
     """Return the place of each eigenvalue's conjugate; its own where it is real. The last axis is the eigenvalues."""
     distance = np.abs(values[..., :, None] - values[..., None, :].conj())
     return np.where(values.imag == 0.0, np.arange(values.shape[-1]), np.argmin(distance, axis=-1))
 
 
-def participation(vectors: np.ndarray) -> np.ndarray:
+def participation(vectors: Complex) -> Real:
     """Return |w_k v_k| of one point's eigenvectors (columns) [-]; a singular matrix is taken by least squares."""
     try:
         left = np.linalg.inv(vectors)
@@ -147,7 +147,7 @@ def _settled(
     return new
 
 
-def _fit(slot: Slot, share: np.ndarray, states: tuple[str, ...]) -> float:
+def _fit(slot: Slot, share: Real, states: tuple[str, ...]) -> float:
     """Return how well a participation fits a slot [-]."""
     weights = np.array([slot.signature.get(state, 0.0) for state in states])
     return float(weights @ share / max(share.sum(), 1e-300))
@@ -180,7 +180,7 @@ class Event(NamedTuple):
     eigenvalue: complex
 
 
-def find_events(values: np.ndarray, valid: np.ndarray, tracks: list[str]) -> list[Event]:
+def find_events(values: Complex, valid: np.ndarray, tracks: list[str]) -> list[Event]:
     """Return what happens along a path.
 
     Parameters
@@ -194,7 +194,7 @@ def find_events(values: np.ndarray, valid: np.ndarray, tracks: list[str]) -> lis
 
     Notes
     -----
-    Where two meet, the square of their difference goes through zero on a straight line: the place is interpolated on it.
+    Where two meet, the square of their difference goes through zero on a straight line: the place is interpolated.
     """
     points = np.flatnonzero(valid)
     if len(points) < 2:
@@ -209,7 +209,7 @@ class _Step(NamedTuple):
     """Valid points in a row, their eigenvalues by track, the conjugates' tracks, and the tracks' names."""
 
     points: np.ndarray
-    values: np.ndarray
+    values: Complex
     partners: np.ndarray
     tracks: list[str]
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from tethership.analysis.linearize import linearize
 from tethership.analysis.modes import Mode, Modes
+from tethership.analysis.spectrum import Real
 from tethership.analysis.sweep import Sweep, sweep
 from tethership.analysis.trim import TrimOutcome, trim
 from tethership.reproduction.linear_figures import (
@@ -106,11 +107,11 @@ def _ends(found: Sweep, *tracks: str) -> dict[str, list[list[float]]]:
     return {name: [_pair(found.track(name)[0]), _pair(found.track(name)[-1])] for name in tracks}
 
 
-def _rises(values: np.ndarray) -> bool:
+def _rises(values: Real) -> bool:
     return bool(np.all(np.diff(values) > -1e-9) and values[-1] > values[0])
 
 
-def _falls(values: np.ndarray) -> bool:
+def _falls(values: Real) -> bool:
     return _rises(-values)
 
 

@@ -6,6 +6,7 @@ Where the print lists no values between the ones it names, the values here say w
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
+import jax.numpy as jnp
 import numpy as np
 
 from tethership.analysis.linearize import linearize
@@ -108,8 +109,10 @@ def light_cables(count: int = 11) -> tuple[np.ndarray, np.ndarray]:
 
 
 def heavy_cables(count: int = 24) -> tuple[np.ndarray, np.ndarray]:
-    """Return diameters [m] and linear densities [kg/m] from there to 14 mm and 140 g/m through the reference, density
-    interpolated in logarithms."""
+    """Return diameters [m] and linear densities [kg/m] from there to 14 mm and 140 g/m.
+
+    They pass through the reference, density interpolated in logarithms.
+    """
     diameter = np.linspace(LIGHT[0], HEAVY[0], count)
     corners = np.log(np.array([LIGHT, REFERENCE, HEAVY]))
     return diameter, np.exp(np.interp(np.log(diameter), corners[:, 0], corners[:, 1]))
@@ -120,7 +123,7 @@ def bottom_line(scenario: Scenario) -> tuple[np.ndarray, np.ndarray]:
     hull = build_hull(scenario.config.vehicle.hull)
     forward = np.array(STATIONS)
     station = np.clip(float(hull.centre()) - forward, 0.0, float(hull.length))
-    return forward, np.asarray(hull.radius(station))
+    return forward, np.asarray(hull.radius(jnp.asarray(station)))
 
 
 def figure_6(changes: Changes) -> tuple[Panel, ...]:
@@ -153,7 +156,7 @@ def figure_8(changes: Changes) -> tuple[Panel, ...]:
 
 
 def figure_9(changes: Changes) -> tuple[Panel, ...]:
-    """The tether point along the bottom line, nose to tail."""
+    """Move the tether point along the bottom line, nose to tail."""
     scenario = load_scenario("docking", changes)
     forward, down = bottom_line(scenario)
     found = sweep(scenario, {"cables.nose.tether_point.0": forward, "cables.nose.tether_point.2": down})

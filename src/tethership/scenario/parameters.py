@@ -1,8 +1,8 @@
 """Every scalar of a scenario by its dotted name: to be swept, or differentiated. Depends on: scenario.
 
-A parameter is one number of the files (`wind.speed`, `cables.nose.tether_point.0`, `vehicle.body.mass`), or the same
-number of all items of a list where it is the same in all, moved together (`vehicle.fins.*.area`). Numbers that must stay equal are one parameter:
-the off-diagonal entries of the inertia matrix, and k2 with k3.
+A parameter is one number of the files (`wind.speed`, `cables.nose.tether_point.0`, `vehicle.body.mass`), or the
+same number of all items of a list where it is the same in all, moved together (`vehicle.fins.*.area`). Numbers that
+must stay equal are one parameter: the off-diagonal entries of the inertia matrix, and k2 with k3.
 """
 
 import copy

@@ -10,6 +10,7 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from tethership.analysis.spectrum import Complex
 from tethership.analysis.sweep import Sweep
 from tethership.errors import ConfigError
 from tethership.reproduction import LinearFigure, Panel
@@ -120,20 +121,20 @@ def _marks(panel: Panel) -> list[go.Scatter]:
     """Return the stars of the reference and the circles of the untethered ship."""
     found, marks = panel.sweep, []
     if panel.star is not None and found.trimmed[panel.star] and len(found.outcomes) > 1:
-        roots = np.array([found.track(track)[panel.star] for track in found.tracks])
+        roots: Complex = np.array([found.track(track)[panel.star] for track in found.tracks], dtype=np.complex128)
         marker = {"symbol": "star", "size": 13, "color": style.END}
         marks.append(
             go.Scatter(x=roots.real, y=roots.imag, mode="markers", marker=marker, hoverinfo="skip", name="reference")
         )
     if panel.free is not None:
         modes = list(panel.free.listed())
-        roots = np.array([sign(mode.eigenvalue) for mode in modes for sign in (complex, np.conj)])
+        free: Complex = np.array([v for m in modes for v in (m.eigenvalue, m.eigenvalue.conjugate())], np.complex128)
         names = [mode.name for mode in modes for _ in range(2)]
         marker = {"symbol": "circle-open", "size": 12, "color": style.INK}
         marks.append(
             go.Scatter(
-                x=roots.real,
-                y=roots.imag,
+                x=free.real,
+                y=free.imag,
                 mode="markers",
                 marker=marker,
                 text=names,

@@ -1,4 +1,4 @@
-"""Root loci: every mode's track in the complex plane, coloured along the parameter. Depends on: matplotlib, view.style."""
+"""Root loci: every mode's track in the complex plane, coloured along the parameter. Depends on: matplotlib, view."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from tethership.analysis.modes import Modes
+from tethership.analysis.spectrum import Complex
 from tethership.analysis.sweep import Sweep
 from tethership.reproduction import LinearFigure, Panel
 from tethership.view import style
@@ -108,7 +109,8 @@ def _panel(axes: Axes, panel: Panel) -> None:
 
 def _frame(axes: Axes, found: Sweep, kept: list[str], free: Modes | None, slow: bool) -> None:
     """Set limits, axes through zero and labels."""
-    roots = np.concatenate([found.track(track)[found.trimmed] for track in kept]) if kept else np.zeros(1, complex)
+    drawn = [found.track(track)[found.trimmed] for track in kept]
+    roots: Complex = np.concatenate([*drawn, np.zeros(1, dtype=np.complex128)])
     if free is not None:
         roots = np.concatenate([roots, free.eigenvalues])
     if slow:
@@ -128,7 +130,7 @@ def _frame(axes: Axes, found: Sweep, kept: list[str], free: Modes | None, slow: 
     axes.tick_params(labelsize=style.SMALL)
 
 
-def _arrow(axes: Axes, roots: np.ndarray) -> None:
+def _arrow(axes: Axes, roots: Complex) -> None:
     """Draw an arrow at the end of a track, in its last direction."""
     moved = np.flatnonzero(np.abs(roots - roots[-1]) > 1e-6) if len(roots) > 1 else np.array([], int)
     if len(moved):
@@ -146,7 +148,7 @@ def _marks(axes: Axes, found: Sweep, kept: list[str], star: int | None, free: Mo
     """Draw the reference as stars and the untethered ship as circles, and explain them."""
     handles = []
     if star is not None and found.trimmed[star] and len(found.outcomes) > 1:
-        roots = np.array([found.track(track)[star] for track in kept])
+        roots: Complex = np.array([found.track(track)[star] for track in kept], dtype=np.complex128)
         axes.plot(roots.real, roots.imag, "*", color=style.END, markersize=11, zorder=3)
         handles.append(Line2D([], [], marker="*", color=style.END, linestyle="none", markersize=9, label="reference"))
     if free is not None:
@@ -178,11 +180,11 @@ def _named(axes: Axes, found: Sweep, kept: list[str]) -> None:
         rise = 0.03
         while any(abs(x - other[0]) < 0.22 and abs(y + rise - other[1]) < 0.035 for other in placed):
             rise += 0.036
-        placed.append((x, y + rise))
+        placed.append((float(x), float(y + rise)))
         axes.annotate(
             names[track],
             xy=(root.real, root.imag),
-            xytext=(x, y + rise),
+            xytext=(float(x), float(y + rise)),
             textcoords="axes fraction",
             fontsize=style.SMALL,
             color=style.INK,
