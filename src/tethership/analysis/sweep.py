@@ -18,7 +18,6 @@ from tethership.analysis.mode_names import assign, mode_name, slots_of, track_na
 from tethership.analysis.posing import Question, ask, posed
 from tethership.analysis.spectrum import Complex
 from tethership.analysis.tracking import (
-    Event,
     Path,
     eigen_path,
     find_events,
@@ -49,6 +48,8 @@ class Happening(NamedTuple):
         coalesce, split, cross, unstable, stable (see `tracking.Event`).
     tracks : tuple of str
         Whose.
+    name : str
+        Name of the first of them by participation just behind, e.g. surge–north.
     at : dict[str, float]
         Parameters where it happens [SI].
     eigenvalue : complex
@@ -57,6 +58,7 @@ class Happening(NamedTuple):
 
     kind: str
     tracks: tuple[str, ...]
+    name: str
     at: dict[str, float]
     eigenvalue: complex
 
@@ -133,14 +135,20 @@ class Sweep:
         """Return the name of each track's mode at a point, from participation there; empty where there is none."""
         if not self.path.valid[point]:
             return tuple("" for _ in self.tracks)
-        share, partner = participation(self.path.vectors[point]), self.path.partners[point]
-        slots, chosen = slots_of(STATE_NAMES), assign(share, STATE_NAMES, partner)
-        names = []
-        for place in self.orders[point]:
-            pair = sorted({int(chosen[place]), int(chosen[partner[place]])})
-            parts: dict[str, float] = {s: float(x) for s, x in zip(STATE_NAMES, share[:, place], strict=True)}
-            names.append(mode_name(slots[pair[0]], slots[pair[1]] if len(pair) > 1 else None, parts))
-        return tuple(names)
+        return tuple(local_names(self.path, point)[place] for place in self.orders[point])
+
+    def named(self, word: str) -> Complex:
+        """Return the eigenvalue [1/s] of the mode that is, or has coalesced with, `word` by participation at each point.
+
+        NaN where there is none. Unlike a track it changes over where two modes exchange their character.
+        """
+        found = np.full(len(self.outcomes), np.nan, dtype=np.complex128)
+        for point in np.flatnonzero(self.trimmed):
+            for place, name in enumerate(local_names(self.path, int(point))):
+                if word == name or word in name.split("–"):
+                    found[point] = self.path.values[point][place]
+                    break
+        return found
 
     def at(self, point: int) -> Scenario:
         """Return the scenario of one point, to be trimmed, linearised or flown."""
@@ -180,7 +188,7 @@ def sweep(scenario: Scenario, *axes: Axis) -> Sweep:
     ordered = np.take_along_axis(path.values, orders, axis=1)
     names = [parameter.name for parameter in parameters]
     tracks = track_names(STATE_NAMES)
-    events = [event for line in lines for event in _happenings(ordered, path.valid, line, fine, names, tracks)]
+    events = [event for line in lines for event in _happenings(path, orders, line, fine, names, tracks)]
     kept = np.concatenate([np.arange(line.start, line.stop, fill) for line in lines])
     valid = path.valid[kept]
     return Sweep(
@@ -310,16 +318,31 @@ def _linked(
 
 
 def _happenings(
-    ordered: np.ndarray, valid: np.ndarray, line: range, fine: np.ndarray, names: list[str], tracks: list[str]
+    path: Path, orders: np.ndarray, line: range, fine: np.ndarray, names: list[str], tracks: list[str]
 ) -> Iterator[Happening]:
     """Yield the events of one line with the parameters where they happen."""
     rows = slice(line.start, line.stop)
-    found: list[Event] = find_events(ordered[rows], valid[rows], tracks)
-    for event in found:
+    ordered = np.take_along_axis(path.values[rows], orders[rows], axis=1)
+    for event in find_events(ordered, path.valid[rows], tracks):
         before = min(int(event.position), len(line) - 2)
         share = event.position - before
         here = (1.0 - share) * fine[line.start + before] + share * fine[line.start + before + 1]
-        yield Happening(event.kind, event.tracks, dict(zip(names, here.tolist(), strict=True)), event.eigenvalue)
+        behind = next(i for i in range(line.start + before + 1, line.stop) if path.valid[i])
+        name = local_names(path, behind)[orders[behind][tracks.index(event.tracks[0])]]
+        where = dict(zip(names, here.tolist(), strict=True))
+        yield Happening(event.kind, event.tracks, name, where, event.eigenvalue)
+
+
+def local_names(path: Path, point: int) -> list[str]:
+    """Return the name of every eigenvalue's mode at a valid point, from participation there, in the path's order."""
+    share, partner = participation(path, point), path.partners[point]
+    slots, chosen = slots_of(STATE_NAMES), assign(share, STATE_NAMES, partner)
+    names = []
+    for place in range(len(partner)):
+        pair = sorted({int(chosen[place]), int(chosen[partner[place]])})
+        parts: dict[str, float] = {s: float(x) for s, x in zip(STATE_NAMES, share[:, place], strict=True)}
+        names.append(mode_name(slots[pair[0]], slots[pair[1]] if len(pair) > 1 else None, parts))
+    return names
 
 
 def _outcomes(scenario: Scenario, throttle: np.ndarray, valid: np.ndarray) -> tuple[TrimOutcome, ...]:

@@ -20,6 +20,8 @@ class Path(NamedTuple):
         λ [1/s], complex, shape (points, n); null ones are exactly zero.
     vectors : ndarray
         Right eigenvectors as columns, of unit length, shape (points, n, n).
+    left : ndarray
+        Left eigenvectors as rows, the inverse of `vectors`, shape (points, n, n).
     partners : ndarray of int
         Place of each eigenvalue's conjugate, its own where it is real, shape (points, n).
     valid : ndarray of bool
@@ -28,12 +30,13 @@ class Path(NamedTuple):
 
     values: Complex
     vectors: Complex
+    left: Complex
     partners: np.ndarray
     valid: np.ndarray
 
     def part(self, rows: slice) -> "Path":
         """Return some of the points."""
-        return Path(self.values[rows], self.vectors[rows], self.partners[rows], self.valid[rows])
+        return Path(*(array[rows] for array in self))
 
 
 def eigen_path(matrices: np.ndarray, valid: np.ndarray) -> Path:
@@ -42,7 +45,15 @@ def eigen_path(matrices: np.ndarray, valid: np.ndarray) -> Path:
     values, vectors = np.linalg.eig(safe)
     size = np.abs(values).max(axis=1, keepdims=True)
     values = np.where(np.abs(values) < NULL * size, 0.0, values).astype(complex)
-    return Path(values, vectors.astype(complex), partners_of(values), valid)
+    return Path(values, vectors.astype(complex), _inverses(vectors.astype(complex)), partners_of(values), valid)
+
+
+def _inverses(vectors: Complex) -> Complex:
+    """Return the inverses of many matrices; a singular one (a defective eigenvalue) is taken by least squares."""
+    try:
+        return np.asarray(np.linalg.inv(vectors), dtype=np.complex128)
+    except np.linalg.LinAlgError:
+        return np.stack([np.linalg.pinv(matrix) for matrix in vectors])
 
 
 def partners_of(values: Complex) -> np.ndarray:
@@ -51,18 +62,14 @@ def partners_of(values: Complex) -> np.ndarray:
     return np.where(values.imag == 0.0, np.arange(values.shape[-1]), np.argmin(distance, axis=-1))
 
 
-def participation(vectors: Complex) -> Real:
-    """Return |w_k v_k| of one point's eigenvectors (columns) [-]; a singular matrix is taken by least squares."""
-    try:
-        left = np.linalg.inv(vectors)
-    except np.linalg.LinAlgError:
-        left = np.linalg.pinv(vectors)
-    return np.abs(left.T * vectors)
+def participation(path: Path, index: int) -> Real:
+    """Return |w_k v_k| of a point [-]: states as rows, eigenvalues as columns."""
+    return np.abs(path.left[index].T * path.vectors[index])
 
 
 def named_order(path: Path, index: int, states: tuple[str, ...]) -> np.ndarray:
     """Return the place of each slot's eigenvalue at a point, by names."""
-    chosen = assign(participation(path.vectors[index]), states, path.partners[index])
+    chosen = assign(participation(path, index), states, path.partners[index])
     return _upper_first(path, index, np.argsort(chosen))
 
 
@@ -81,13 +88,16 @@ def matched(path: Path, before: int, after: int, order: np.ndarray) -> np.ndarra
 
     Notes
     -----
-    Cost of a pair: one less |v₁ᴴv₂|², plus the relative distance of the eigenvalues.
+    Cost of a pair: one less |w₁v₂ w₂v₁|, plus the relative distance of the eigenvalues. With w₁v₁ = 1 the product is 1
+    for a mode and its continuation and 0 for any other, even where right eigenvectors are nearly parallel (the slow
+    modes, which all drift mostly north); |v₁ᴴv₂|² settles what it leaves open at a defective eigenvalue.
     """
-    first = path.vectors[before][:, order]
+    right, left = path.vectors[before][:, order], path.left[before][order]
     old, new = path.values[before][order], path.values[after]
-    likeness = np.abs(first.conj().T @ path.vectors[after]) ** 2
+    likeness = np.minimum(np.abs(left @ path.vectors[after]) * np.abs(path.left[after] @ right).T, 1.0)
+    parallel = np.abs(right.conj().T @ path.vectors[after]) ** 2
     reach = np.abs(old)[:, None] + np.abs(new)[None, :] + 1e-3 * np.abs(new).max()
-    cost = 1.0 - likeness + np.abs(old[:, None] - new[None, :]) / reach
+    cost = 1.1 - likeness - 0.1 * parallel + np.abs(old[:, None] - new[None, :]) / reach
     row = np.argmin(cost, axis=1)
     if len(set(row.tolist())) == len(row):
         return row
@@ -137,7 +147,7 @@ def _settled(
     if not np.any(real & (was.imag != 0)):
         return new
     broken = [(i, j) for i, j in _pairs(partners_of(was)) if real[i] and real[j]]
-    share = participation(path.vectors[after])[:, new]
+    share = participation(path, after)[:, new]
     for i, j in broken:
         straight = _fit(slots[i], share[:, i], states) + _fit(slots[j], share[:, j], states)
         swapped = _fit(slots[i], share[:, j], states) + _fit(slots[j], share[:, i], states)

@@ -10,7 +10,7 @@ import numpy as np
 
 from tethership.analysis.linearize import linearize
 from tethership.analysis.modes import Mode, Modes
-from tethership.analysis.spectrum import Real
+from tethership.analysis.spectrum import Complex, Real
 from tethership.analysis.sweep import Sweep, sweep
 from tethership.analysis.trim import TrimOutcome, trim
 from tethership.reproduction.linear_figures import (
@@ -97,14 +97,34 @@ def _growth(mode: Mode | None) -> float:
 def _met(found: Sweep, kind: str, *tracks: str) -> float | None:
     """Return where (first parameter) two tracks do something together, or None."""
     for event in found.events:
-        if event.kind == kind and set(event.tracks) == set(tracks):
+        if event.kind == kind and (set(event.tracks) == set(tracks) or event.name in _joined(tracks)):
             return next(iter(event.at.values()))
     return None
 
 
+def _joined(words: tuple[str, ...]) -> set[str]:
+    """Return the names that a mode coalesced of these may have."""
+    return {"–".join(words), "–".join(reversed(words))}
+
+
 def _ends(found: Sweep, *tracks: str) -> dict[str, list[list[float]]]:
-    """Return first and last eigenvalue of tracks."""
-    return {name: [_pair(found.track(name)[0]), _pair(found.track(name)[-1])] for name in tracks}
+    """Return first and last eigenvalue of modes, followed as tracks or, for the slow ones, named at each point."""
+    values = {name: _values(found, name) for name in tracks}
+    return {name: [_pair(value[0]), _pair(value[-1])] for name, value in values.items()}
+
+
+def _values(found: Sweep, name: str) -> Complex:
+    """Return a mode's eigenvalues along a sweep.
+
+    Notes
+    -----
+    Slow modes exchange their character where they pass each other (north and vertical, with large fins): the paper
+    speaks of them by what they are, so they are named at each point. The others are followed.
+    """
+    if name in ("surge", "north", "east", "heading", "vertical"):
+        value = found.named(name)
+        return np.where(value.imag < 0, value.conjugate(), value)
+    return found.track(name)
 
 
 def _rises(values: Real) -> bool:
@@ -178,7 +198,7 @@ def _cable_sweep(changes: Changes, scenario: str, cables: str, heavy: bool) -> S
 def claim_3(changes: Changes) -> Claim:
     """L3: one light cable, up to 6 g/m."""
     found = _cable_sweep(changes, "docking", "cables.nose", heavy=False)
-    surge, north, east, vertical = (found.track(name) for name in ("surge", "north", "east", "vertical"))
+    surge, north, east, vertical = (_values(found, name) for name in ("surge", "north", "east", "vertical"))
     parts = {
         "surge becomes less stable (while real)": _rises(surge[surge.imag == 0].real),
         "north becomes stable": north[-1].real < -1e-3,
@@ -200,10 +220,10 @@ def claim_4(changes: Changes) -> Claim:
     """L4: one heavier cable, up to 140 g/m."""
     light = _cable_sweep(changes, "docking", "cables.nose", heavy=False)
     found = _cable_sweep(changes, "docking", "cables.nose", heavy=True)
-    surge = found.track("surge")
+    surge = _values(found, "surge")
     damping = -surge.real / np.abs(surge)
     coupled = surge.imag > 0
-    heading, east, vertical = (found.track(name) for name in ("heading", "east", "vertical"))
+    heading, east, vertical = (_values(found, name) for name in ("heading", "east", "vertical"))
     parts = {
         "surge and north coalesce to an oscillation": bool(coupled[-1]),
         "it is stable": bool(np.all(surge.real[coupled] < 0)),
@@ -235,23 +255,23 @@ def claim_5(changes: Changes) -> Claim:
     heavy = _cable_sweep(changes, "side_cables", "cables.*", heavy=True)
     single = _met(one, "coalesce", "surge", "north")
     double = _met(light, "coalesce", "surge", "north")
-    heading, east = light.track("heading"), light.track("east")
-    lateral = heavy.track("heading")
+    heading, east = _values(light, "heading"), _values(light, "east")
+    lateral, aside = _values(heavy, "heading"), _values(heavy, "east")
     coupled = lateral.imag > 0
     damping = -lateral.real / np.abs(lateral)
-    vertical = np.concatenate([light.track("vertical"), heavy.track("vertical")])
-    nose = _cable_sweep(changes, "docking", "cables.nose", heavy=True).track("vertical")
+    vertical = np.concatenate([_values(light, "vertical"), _values(heavy, "vertical")])
+    nose = _values(_cable_sweep(changes, "docking", "cables.nose", heavy=True), "vertical")
     parts = {
         "surge and north coalesce at a lighter cable than with one": double is not None
         and (single is None or double < single),
         "light: heading becomes unstable, real": heading[-1].real > 0 and heading[-1].imag == 0,
         "light: east becomes stable, real": east[-1].real < 0 and east[-1].imag == 0,
         "heavier: heading and east coalesce to a stable oscillation": bool(coupled[-1])
-        and lateral[-1] == heavy.track("east")[-1].conjugate()
+        and lateral[-1] == aside[-1]
         and lateral[-1].real < 0,
         "its damping falls": bool(coupled.sum() > 1) and _falls(damping[coupled]),
         "vertical moves less than with the nose cable": float(np.ptp(vertical.real))
-        < float(np.ptp(np.concatenate([one.track("vertical"), nose]).real)),
+        < float(np.ptp(np.concatenate([_values(one, "vertical"), nose]).real)),
     }
     numbers = {
         "coalescence of surge and north at diameter [m], one and two cables": [single, double],
@@ -272,7 +292,7 @@ def claim_6(changes: Changes) -> Claim:
     forward, down = bottom_line(scenario)
     found = sweep(scenario, {"cables.nose.tether_point.0": forward, "cables.nose.tether_point.2": down})
     where = _met(found, "coalesce", "heading", "east")
-    heading, pendulum, vertical = (found.track(name) for name in ("heading", "pendulum", "vertical"))
+    heading, pendulum, vertical = (_values(found, name) for name in ("heading", "pendulum", "vertical"))
     aft = forward <= 3.77 + 1e-9
     frequency, damping = np.abs(heading[aft].imag), -heading[aft].real / np.abs(heading[aft])
     parts = {
@@ -295,7 +315,7 @@ def claim_6(changes: Changes) -> Claim:
 def claim_7(changes: Changes) -> Claim:
     """L7: wind from 6 to 12 m/s."""
     found = sweep(load_scenario("docking", changes), {"wind.speed": np.linspace(6.0, 12.0, 13)})
-    pitch, yaw, pendulum = (found.track(name) for name in ("pitch subsidence", "yaw subsidence", "pendulum"))
+    pitch, yaw, pendulum = (_values(found, name) for name in ("pitch subsidence", "yaw subsidence", "pendulum"))
     damping = -pendulum.real / np.abs(pendulum)
     other = found.track("pendulum 2")
     split = _met(found, "split", "pendulum", "pendulum 2")
@@ -322,7 +342,7 @@ def claim_8(changes: Changes) -> Claim:
     parts: dict[str, bool] = {}
     numbers: dict[str, Any] = dict(_ends(found, "pendulum", "surge"))
     for name, label in (("pendulum", "pendulum"), ("surge", "surge–north")):
-        track = found.track(name)
+        track = _values(found, name)
         frequency, damping = np.abs(track.imag), -track.real / np.abs(track)
         slope = np.abs(np.diff(track) / np.diff(value))
         low, high = float(slope[value[1:] <= 0.9].mean()), float(slope[value[1:] > 0.9].mean())
