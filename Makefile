@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: dock test lint bench figures clean
+.PHONY: dock test lint bench figures validation clean
 
 dock: $(VENV)/.installed
 	$(BIN)/tethership dock --out out
@@ -22,10 +22,16 @@ lint: $(VENV)/.installed-dev
 bench: $(VENV)/.installed-dev
 	$(BIN)/python benchmarks/cable.py
 	$(BIN)/python benchmarks/docking.py
+	$(BIN)/python benchmarks/linear.py
 
 figures: $(VENV)/.installed
 	$(BIN)/tethership dock --wind 12 --layers rewind,heading --out out/readme
 	cp out/readme/docking.png docs/docking.png
+	$(BIN)/tethership sweep --over wind=6:12:13 --out out/readme
+	cp out/readme/root_locus.png docs/root_locus.png
+
+validation: $(VENV)/.installed
+	$(BIN)/python docs/validation/make_linear.py
 
 $(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \

@@ -138,7 +138,7 @@ class Sweep:
         return tuple(local_names(self.path, point)[place] for place in self.orders[point])
 
     def named(self, word: str) -> Complex:
-        """Return the eigenvalue [1/s] of the mode that is, or has coalesced with, `word` by participation at each point.
+        """Return λ [1/s] of the mode that is, or has coalesced with, `word`, by participation at each point.
 
         NaN where there is none. Unlike a track it changes over where two modes exchange their character.
         """
