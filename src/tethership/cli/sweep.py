@@ -90,11 +90,9 @@ def _swept(scenario: Scenario, over: list[str], out: Path) -> tuple[dict[str, An
     result = head | summary(found)
     with stage("draw"):
         from tethership.view.interactive import interactive_root_locus, write_page
-        from tethership.view.root_locus import plot_root_locus
+        from tethership.view.root_locus import plot_root_loci
 
-        axes_drawn = plot_root_locus(found)
-        axes_drawn.set_title(f"{scenario.config.title} · {scenario.formulation} formulation", fontsize=10)
-        axes_drawn.figure.savefig(out / "root_locus.png", dpi=120)  # pyright: ignore[reportAttributeAccessIssue]
+        plot_root_loci(found).savefig(out / "root_locus.png", dpi=120)
         write_page(interactive_root_locus(found, scenario.config.title), out / "root_locus.html")
     result["files"] = [str(out / "root_locus.png"), str(out / "root_locus.html")]
     return result, [found]

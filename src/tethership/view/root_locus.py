@@ -11,6 +11,7 @@ from tethership.analysis.modes import Modes
 from tethership.analysis.spectrum import Complex
 from tethership.analysis.sweep import Sweep
 from tethership.reproduction import LinearFigure, Panel
+from tethership.scenario import list_parameters
 from tethership.view import style
 
 SLOWEST = 0.4
@@ -86,6 +87,33 @@ def plot_root_locus(
         bar.set_label(f"{label} [{unit}]" if unit else label, fontsize=style.FONT)
         bar.ax.tick_params(labelsize=style.SMALL)
     return axes
+
+
+def plot_root_loci(found: Sweep) -> Figure:
+    """Draw a sweep twice: all modes, and the slow ones; the scenario's own values are the reference.
+
+    Returns a figure that is not shown and not saved.
+    """
+    config = found.scenario.config
+    drawn = Figure(figsize=(2 * PANEL[0], PANEL[1]), layout="constrained")
+    title = f"{config.title}\nwind {config.wind.speed:g} m/s, {found.scenario.formulation} formulation"
+    if "wind.speed" in found.values:
+        title = f"{config.title}\n{found.scenario.formulation} formulation"
+    drawn.suptitle(title, fontsize=style.FONT + 2, color=style.INK)
+    star = _own_point(found)
+    for axes, slow, words in zip(drawn.subplots(1, 2), (False, True), ("all modes", "slow modes"), strict=True):
+        plot_root_locus(found, axes, star=star, slow=slow)
+        axes.set_title(words, fontsize=style.FONT + 1)
+    return drawn
+
+
+def _own_point(found: Sweep) -> int | None:
+    """Return the point whose parameters are the scenario's own, if there is one."""
+    known = list_parameters(found.scenario.config)
+    same = np.ones(len(found.outcomes), dtype=bool)
+    for name, values in found.values.items():
+        same &= np.isclose(values, known[name].value, rtol=1e-9, atol=1e-12)
+    return int(np.flatnonzero(same)[0]) if same.any() else None
 
 
 def plot_linear_figure(figure: LinearFigure) -> Figure:
