@@ -5,6 +5,7 @@ rest and in motion, with P away from G and B; Galilean invariance; mirror symmet
 input. If one failed, eigenvalues would be those of another ship.
 """
 
+import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -216,3 +217,23 @@ def test_a_point_out_of_equilibrium_is_refused_with_how_far(trimmed):
     assert np.isfinite(linearize(scenario, (off, point.command), require_equilibrium=False).A).all()
     with pytest.raises(ts.ConfigError, match=r"unknown route 'exakt'; did you mean 'exact'\?"):
         linearize(scenario, point, "exakt")
+
+
+def test_a_model_too_singular_to_divide_by_is_refused(trimmed):
+    """A ship without mass, and one that stands on its nose."""
+    scenario, point = trimmed("hover", "published")
+    plant = eqx.tree_at(
+        lambda p: (
+            p.ship.body.mass,
+            p.ship.body.inertia,
+            p.ship.apparent_mass.translational,
+            p.ship.apparent_mass.rotational,
+        ),
+        scenario.system,
+        replace_fn=jnp.zeros_like,
+    )
+    with pytest.raises(ts.ConfigError, match=r"mass matrix is too singular to divide by \(condition number inf"):
+        linearize(plant, point)
+    upright = State(point.state.velocity, point.state.rates, jnp.array([0.0, np.pi / 2, 0.0]), point.state.position)
+    with pytest.raises(ts.ConfigError, match=r"at a pitch of 90° Euler angles are singular"):
+        linearize(scenario, (upright, point.command))

@@ -21,10 +21,15 @@ from tethership.errors import ConfigError, suggestion
 from tethership.scenario import Scenario
 from tethership.spatial import STANDARD_GRAVITY, rotation_matrix
 from tethership.system import Command, State, TetheredAirship
+from tethership.system.airship import mass_matrix
 from tethership.system.state import STATE_NAMES, STATE_UNITS
 
 ROUTES = ("exact", "semi_analytic", "differences")
 """The three independent routes to A and U."""
+
+
+WORST_CONDITION = 1e8
+"""Largest condition number of the mass matrix, lengths in half hulls: beyond it half of the digits are gone."""
 
 
 class Matrices(NamedTuple):
@@ -127,11 +132,13 @@ def linearize(
     Raises
     ------
     ConfigError
-        The point is not in equilibrium (it says how far off), or the route is not known.
+        The point is not in equilibrium (it says how far off), the route is not known, or the model is too singular to
+        divide by (mass matrix, pitch of ±90°).
     """
     plant = system.system if isinstance(system, Scenario) else system
     state, command = (point.state, point.command) if isinstance(point, TrimPoint) else point
     vector, inputs = state.as_vector(), input_vector(plant, command)
+    _check_dividable(plant, state)
     exact, comparable, residual = _exact(plant, vector, inputs)
     if require_equilibrium:
         _check_equilibrium(plant, np.asarray(residual))
@@ -150,6 +157,25 @@ def linearize(
         _attributes(system, point, route),
     )
     return _with_lengths(model, plant) if length_states else model
+
+
+def _check_dividable(plant: TetheredAirship, state: State) -> None:
+    """Raise ConfigError where a mass matrix or an attitude cannot be divided by."""
+    reach = 0.5 * float(plant.ship.outline.station[-1])
+    scale = np.array([1.0, 1.0, 1.0, reach, reach, reach])
+    matrix = np.asarray(mass_matrix(state, plant.ship, plant.environment)) / np.outer(scale, scale)
+    condition = np.linalg.cond(matrix) if np.isfinite(matrix).all() else np.inf
+    if condition > WORST_CONDITION:
+        raise ConfigError(
+            f"linearize: the mass matrix is too singular to divide by (condition number {condition:.2g}, at most "
+            f"{WORST_CONDITION:.0g}); check mass, inertia and apparent mass of the vehicle"
+        )
+    level = abs(float(np.cos(state.attitude[1])))
+    if level < 1e-6:
+        raise ConfigError(
+            f"linearize: at a pitch of {np.degrees(float(state.attitude[1])):.4g}° Euler angles are singular: there is "
+            "no linear model in them; trim within ±80°"
+        )
 
 
 def _check_equilibrium(plant: TetheredAirship, residual: np.ndarray) -> None:

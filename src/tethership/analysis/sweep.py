@@ -5,7 +5,7 @@ Depends on: analysis.continuation, analysis.tracking, analysis.trim, scenario.
 
 import dataclasses
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import jax
@@ -14,13 +14,14 @@ import numpy as np
 
 from tethership.analysis.continuation import Batch, in_equilibrium, solve_points
 from tethership.analysis.equilibrium import solve
+from tethership.analysis.events import find_events
+from tethership.analysis.grid import Axis, fill_lines, lay_grid
 from tethership.analysis.mode_names import assign, mode_name, slots_of, track_names
 from tethership.analysis.posing import Question, ask, posed
 from tethership.analysis.spectrum import Complex
 from tethership.analysis.tracking import (
     Path,
     eigen_path,
-    find_events,
     follow,
     matched,
     named_order,
@@ -35,9 +36,6 @@ from tethership.system.state import STATE_NAMES
 FINE = 160
 """Points along a line between which eigenvectors are compared: coarser sweeps are filled up to as many."""
 
-Axis = Mapping[str, Sequence[float] | np.ndarray]
-"""Parameters moved together along one axis: name → values [SI]."""
-
 
 class Happening(NamedTuple):
     """An event of a sweep.
@@ -45,7 +43,7 @@ class Happening(NamedTuple):
     Attributes
     ----------
     kind : str
-        coalesce, split, cross, unstable, stable (see `tracking.Event`).
+        coalesce, split, cross, unstable, stable (see `events.Event`).
     tracks : tuple of str
         Whose.
     name : str
@@ -177,9 +175,9 @@ def sweep(scenario: Scenario, *axes: Axis) -> Sweep:
     ConfigError
         A parameter does not exist (nearest names offered), a range is empty, not finite or out of the file's bounds.
     """
-    parameters, grid, shape = _grid(scenario, axes)
+    parameters, grid, shape = lay_grid(scenario, axes)
     fill = max(1, math.ceil(FINE / max(shape[-1] - 1, 1))) if shape[-1] > 1 else 1
-    fine, per_line = _filled(grid, shape[-1], fill)
+    fine, per_line = fill_lines(grid, shape[-1], fill)
     question = ask(scenario)
     reference, start = _reference(scenario, parameters, grid, question)
     batch = solve_points(scenario.config.as_arrays(), [p.places for p in parameters], question, fine, reference, start)
@@ -213,53 +211,6 @@ def sweep(scenario: Scenario, *axes: Axis) -> Sweep:
 
 def _full_name(scenario: Scenario, name: str) -> str:
     return find_parameter(list_parameters(scenario.config), name, scenario.name).name
-
-
-def _grid(scenario: Scenario, axes: tuple[Axis, ...]) -> tuple[list[Parameter], np.ndarray, tuple[int, ...]]:
-    """Return the parameters, their values at all points (points, parameters) and the shape of the grid."""
-    known = list_parameters(scenario.config)
-    parameters: list[Parameter] = []
-    columns: list[tuple[int, np.ndarray]] = []
-    shape: list[int] = []
-    if not axes or not all(axes):
-        raise ConfigError("sweep: name at least one parameter with its values")
-    for index, axis in enumerate(axes):
-        lengths = {name: len(np.atleast_1d(values)) for name, values in axis.items()}
-        if len(set(lengths.values())) != 1:
-            raise ConfigError(f"sweep: parameters moved together need as many values each; there are {lengths}")
-        shape.append(next(iter(lengths.values())))
-        for name, values in axis.items():
-            parameter = find_parameter(known, name, scenario.name)
-            if parameter.name in [other.name for other in parameters]:
-                raise ConfigError(f"sweep: {parameter.name} is named twice; name each parameter once")
-            parameters.append(parameter)
-            columns.append((index, _checked(name, np.atleast_1d(np.asarray(values, dtype=float)))))
-    mesh = np.meshgrid(*[np.arange(count) for count in shape], indexing="ij")
-    grid = np.stack([values[mesh[index].ravel()] for index, values in columns], axis=1)
-    for row in {0, len(grid) - 1}:
-        scenario_at(scenario, dict(zip([p.name for p in parameters], grid[row], strict=True)))
-    return parameters, grid, tuple(shape)
-
-
-def _checked(name: str, values: np.ndarray) -> np.ndarray:
-    """Return the values of a parameter, or raise ConfigError."""
-    if values.size == 0:
-        raise ConfigError(f"sweep: the range of {name} is empty; give at least one value")
-    if not np.isfinite(values).all():
-        raise ConfigError(f"sweep: the range of {name} has values that are not finite numbers")
-    return values
-
-
-def _filled(grid: np.ndarray, count: int, fill: int) -> tuple[np.ndarray, int]:
-    """Return the points with `fill` − 1 more between neighbours of every line, and how many a line then has."""
-    lines = grid.reshape(-1, count, grid.shape[1])
-    places = np.linspace(0.0, count - 1.0, (count - 1) * fill + 1)
-    before = np.minimum(places.astype(int), max(count - 2, 0))
-    share = (places - before)[:, None]
-    after = np.minimum(before + 1, count - 1)
-    fine = (1.0 - share) * lines[:, before] + share * lines[:, after]
-    fine[:, ::fill] = lines
-    return fine.reshape(-1, grid.shape[1]), len(places)
 
 
 def _reference(

@@ -3,7 +3,8 @@
 Riboldi, Croce, Pagani, He, Bortolini, *Airship dynamics in a tethered docking maneuver*.
 """
 
-from tethership.reproduction.linear_claims import CLAIMS, Claim, check_claims
+from tethership.reproduction.claim import Claim
+from tethership.reproduction.linear_claims import CLAIMS, check_claims
 from tethership.reproduction.linear_figures import FIGURES, LinearFigure, Panel, linear_figure
 
 __all__ = ["CLAIMS", "FIGURES", "Claim", "LinearFigure", "Panel", "check_claims", "linear_figure"]

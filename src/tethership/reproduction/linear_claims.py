@@ -1,18 +1,29 @@
 """Claims L1–L9 of section 3 of the paper, each computed and judged: holds, or does not, with the numbers.
 
-Depends on: reproduction.linear_figures, analysis. One function per claim; a claim holds only if every part of it does.
+Depends on: reproduction, analysis. One function per claim; a claim holds only if every part of it does.
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from tethership.analysis.linearize import linearize
-from tethership.analysis.modes import Mode, Modes
-from tethership.analysis.spectrum import Complex, Real
 from tethership.analysis.sweep import Sweep, sweep
 from tethership.analysis.trim import TrimOutcome, trim
+from tethership.reproduction.claim import (
+    Claim,
+    ends,
+    falls,
+    find_mode,
+    followed,
+    growth,
+    is_real,
+    listed,
+    pair,
+    rises,
+    where_met,
+)
 from tethership.reproduction.linear_figures import (
     ELONGATIONS,
     Changes,
@@ -36,103 +47,10 @@ LIFT_PER_EFFICIENCY = 2.88 * 5.73
 """S C_Nα of `lotte.toml` [m²]."""
 
 
-class Claim(NamedTuple):
-    """What became of a claim.
-
-    Attributes
-    ----------
-    name : str
-        L1 … L9.
-    statement : str
-        What the paper says.
-    parts : dict[str, bool]
-        Each part and whether it holds.
-    numbers : dict
-        What was computed: eigenvalues as [re, im] [1/s].
-    """
-
-    name: str
-    statement: str
-    parts: dict[str, bool]
-    numbers: dict[str, Any]
-
-    @property
-    def holds(self) -> bool:
-        """Whether every part holds."""
-        return all(self.parts.values())
-
-    @property
-    def verdict(self) -> str:
-        """In words."""
-        return "holds" if self.holds else "does not hold"
-
-
 def fins(lift_area: float) -> dict[str, float]:
     """Return the change that gives every fin S C_Nα η_f [m²]."""
     names = ("fin_starboard", "fin_bottom", "fin_port", "fin_top")
     return {f"vehicle.fins.{name}.efficiency": lift_area / LIFT_PER_EFFICIENCY for name in names}
-
-
-def _pair(value: complex) -> list[float]:
-    return [float(value.real), float(value.imag)]
-
-
-def _listed(modes: Modes) -> dict[str, list[float]]:
-    return {mode.name: _pair(mode.eigenvalue) for mode in modes.modes}
-
-
-def _find(modes: Modes, name: str) -> Mode | None:
-    """Return the mode of exactly that name."""
-    return next((mode for mode in modes.modes if mode.name == name), None)
-
-
-def _real(mode: Mode | None) -> bool:
-    return mode is not None and not mode.oscillates
-
-
-def _growth(mode: Mode | None) -> float:
-    return float("nan") if mode is None else float(mode.eigenvalue.real)
-
-
-def _met(found: Sweep, kind: str, *tracks: str) -> float | None:
-    """Return where (first parameter) two tracks do something together, or None."""
-    for event in found.events:
-        if event.kind == kind and (set(event.tracks) == set(tracks) or event.name in _joined(tracks)):
-            return next(iter(event.at.values()))
-    return None
-
-
-def _joined(words: tuple[str, ...]) -> set[str]:
-    """Return the names that a mode coalesced of these may have."""
-    return {"–".join(words), "–".join(reversed(words))}
-
-
-def _ends(found: Sweep, *tracks: str) -> dict[str, list[list[float]]]:
-    """Return first and last eigenvalue of modes, followed as tracks or, for the slow ones, named at each point."""
-    values = {name: _values(found, name) for name in tracks}
-    return {name: [_pair(value[0]), _pair(value[-1])] for name, value in values.items()}
-
-
-def _values(found: Sweep, name: str) -> Complex:
-    """Return a mode's eigenvalues along a sweep.
-
-    Notes
-    -----
-    Slow modes exchange their character where they pass each other (north and vertical, with large fins): the paper
-    speaks of them by what they are, so they are named at each point. The others are followed.
-    """
-    if name in ("surge", "north", "east", "heading", "vertical"):
-        value = found.named(name)
-        return np.where(value.imag < 0, value.conjugate(), value)
-    return found.track(name)
-
-
-def _rises(values: Real) -> bool:
-    return bool(np.all(np.diff(values) > -1e-9) and values[-1] > values[0])
-
-
-def _falls(values: Real) -> bool:
-    return _rises(-values)
 
 
 def claim_1(changes: Changes) -> Claim:
@@ -145,41 +63,39 @@ def claim_1(changes: Changes) -> Claim:
     reals = sorted((abs(m.eigenvalue) for m in modes.modes if not m.oscillates), reverse=True)
     fast = [abs(m.eigenvalue) for m in (pitch, yaw) if m is not None]
     parts = {
-        "pitch and yaw subsidence are the fastest real modes, stable": _real(pitch)
-        and _real(yaw)
+        "pitch and yaw subsidence are the fastest real modes, stable": is_real(pitch)
+        and is_real(yaw)
         and sorted(fast, reverse=True) == reals[:2]
-        and _growth(pitch) < 0
-        and _growth(yaw) < 0,
-        "surge is real, stable and slow": _real(surge) and -0.1 < _growth(surge) < 0,
-        "side-slip is real and mildly unstable": _real(slip) and 0 < _growth(slip) < 0.25,
+        and growth(pitch) < 0
+        and growth(yaw) < 0,
+        "surge is real, stable and slow": is_real(surge) and -0.1 < growth(surge) < 0,
+        "side-slip is real and mildly unstable": is_real(slip) and 0 < growth(slip) < 0.25,
         "pendulum oscillates, mildly stable or unstable": pendulum is not None
         and pendulum.oscillates
-        and abs(_growth(pendulum)) < 0.15,
+        and abs(growth(pendulum)) < 0.15,
         "roll oscillates, faster than pendulum, stable": roll is not None
         and pendulum is not None
         and roll.oscillates
         and abs(roll.eigenvalue.imag) > abs(pendulum.eigenvalue.imag)
-        and _growth(roll) < 0,
-        "the directional mode is real, slow and not null": _real(heading) and not heading.null if heading else False,
+        and growth(roll) < 0,
+        "the directional mode is real, slow and not null": is_real(heading) and not heading.null if heading else False,
     }
-    return Claim(
-        "L1", "untethered, nine states: the classical spectrum of an airship", parts, {"modes": _listed(modes)}
-    )
+    return Claim("L1", "untethered, nine states: the classical spectrum of an airship", parts, {"modes": listed(modes)})
 
 
 def claim_2(changes: Changes) -> Claim:
     """L2: position adds two null modes and a slow vertical one."""
     modes = free_modes(changes)
-    north, east, vertical = (_find(modes, name) for name in ("north", "east", "vertical"))
+    north, east, vertical = (find_mode(modes, name) for name in ("north", "east", "vertical"))
     scenario = load_scenario("hover", {**changes, "atmosphere": {"model": "constant", "density": _density()}})
     flat = linearize(scenario, trim(scenario)).modes()
-    still = _find(flat, "vertical")
+    still = find_mode(flat, "vertical")
     parts = {
         "north and east are null": bool(north and north.null and east and east.null),
-        "vertical is real, slow and mildly unstable": _real(vertical) and 0 < _growth(vertical) < SLOW,
+        "vertical is real, slow and mildly unstable": is_real(vertical) and 0 < growth(vertical) < SLOW,
         "it is ρ(altitude) that does it: null in air of constant density": bool(still and still.null),
     }
-    numbers = {"modes": _listed(modes), "vertical at constant density": _pair(still.eigenvalue) if still else None}
+    numbers = {"modes": listed(modes), "vertical at constant density": pair(still.eigenvalue) if still else None}
     return Claim(
         "L2", "twelve states add null north and east and a slow, mildly unstable vertical mode", parts, numbers
     )
@@ -198,17 +114,17 @@ def _cable_sweep(changes: Changes, scenario: str, cables: str, heavy: bool) -> S
 def claim_3(changes: Changes) -> Claim:
     """L3: one light cable, up to 6 g/m."""
     found = _cable_sweep(changes, "docking", "cables.nose", heavy=False)
-    surge, north, east, vertical = (_values(found, name) for name in ("surge", "north", "east", "vertical"))
+    surge, north, east, vertical = (followed(found, name) for name in ("surge", "north", "east", "vertical"))
     parts = {
-        "surge becomes less stable (while real)": _rises(surge[surge.imag == 0].real),
+        "surge becomes less stable (while real)": rises(surge[surge.imag == 0].real),
         "north becomes stable": north[-1].real < -1e-3,
-        "surge and north stay real up to 6 g/m": _met(found, "coalesce", "surge", "north") is None,
+        "surge and north stay real up to 6 g/m": where_met(found, "coalesce", "surge", "north") is None,
         "east becomes slowly unstable, real": 0 < east[-1].real < SLOW and east[-1].imag == 0,
-        "vertical moves towards stability": _falls(vertical.real),
+        "vertical moves towards stability": falls(vertical.real),
     }
     numbers = {
-        **_ends(found, "surge", "north", "east", "heading", "vertical"),
-        "surge and north coalesce at diameter [m]": _met(found, "coalesce", "surge", "north"),
+        **ends(found, "surge", "north", "east", "heading", "vertical"),
+        "surge and north coalesce at diameter [m]": where_met(found, "coalesce", "surge", "north"),
         "tension at 6 g/m [N]": float(found.tension[-1, 0]),
     }
     return Claim(
@@ -220,26 +136,26 @@ def claim_4(changes: Changes) -> Claim:
     """L4: one heavier cable, up to 140 g/m."""
     light = _cable_sweep(changes, "docking", "cables.nose", heavy=False)
     found = _cable_sweep(changes, "docking", "cables.nose", heavy=True)
-    surge = _values(found, "surge")
+    surge = followed(found, "surge")
     damping = -surge.real / np.abs(surge)
     coupled = surge.imag > 0
-    heading, east, vertical = (_values(found, name) for name in ("heading", "east", "vertical"))
+    heading, east, vertical = (followed(found, name) for name in ("heading", "east", "vertical"))
     parts = {
         "surge and north coalesce to an oscillation": bool(coupled[-1]),
         "it is stable": bool(np.all(surge.real[coupled] < 0)),
-        "its damping falls": _falls(damping[coupled]),
+        "its damping falls": falls(damping[coupled]),
         "the directional mode is real and ever more stable": bool(np.all(heading.imag == 0))
-        and _falls(heading.real)
+        and falls(heading.real)
         and heading[-1].real < 0,
-        "vertical is ever more stable": _falls(vertical.real) and vertical[-1].real < 0,
-        "east is real and ever more unstable": bool(np.all(east.imag == 0)) and _rises(east.real) and east[-1].real > 0,
+        "vertical is ever more stable": falls(vertical.real) and vertical[-1].real < 0,
+        "east is real and ever more unstable": bool(np.all(east.imag == 0)) and rises(east.real) and east[-1].real > 0,
     }
-    where = _met(light, "coalesce", "surge", "north") or _met(found, "coalesce", "surge", "north")
+    where = where_met(light, "coalesce", "surge", "north") or where_met(found, "coalesce", "surge", "north")
     numbers = {
-        **_ends(found, "surge", "heading", "east", "vertical"),
+        **ends(found, "surge", "heading", "east", "vertical"),
         "heading and east with their names exchanged": bool(np.all(heading.imag == 0) and np.all(east.imag == 0))
-        and _falls(east.real)
-        and _rises(heading.real),
+        and falls(east.real)
+        and rises(heading.real),
         "surge and north coalesce at diameter [m]": where,
         "damping of surge–north, first and last": [float(damping[coupled][0]), float(damping[coupled][-1])],
     }
@@ -253,14 +169,14 @@ def claim_5(changes: Changes) -> Claim:
     one = _cable_sweep(changes, "docking", "cables.nose", heavy=False)
     light = _cable_sweep(changes, "side_cables", "cables.*", heavy=False)
     heavy = _cable_sweep(changes, "side_cables", "cables.*", heavy=True)
-    single = _met(one, "coalesce", "surge", "north")
-    double = _met(light, "coalesce", "surge", "north")
-    heading, east = _values(light, "heading"), _values(light, "east")
-    lateral, aside = _values(heavy, "heading"), _values(heavy, "east")
+    single = where_met(one, "coalesce", "surge", "north")
+    double = where_met(light, "coalesce", "surge", "north")
+    heading, east = followed(light, "heading"), followed(light, "east")
+    lateral, aside = followed(heavy, "heading"), followed(heavy, "east")
     coupled = lateral.imag > 0
     damping = -lateral.real / np.abs(lateral)
-    vertical = np.concatenate([_values(light, "vertical"), _values(heavy, "vertical")])
-    nose = _values(_cable_sweep(changes, "docking", "cables.nose", heavy=True), "vertical")
+    vertical = np.concatenate([followed(light, "vertical"), followed(heavy, "vertical")])
+    nose = followed(_cable_sweep(changes, "docking", "cables.nose", heavy=True), "vertical")
     parts = {
         "surge and north coalesce at a lighter cable than with one": double is not None
         and (single is None or double < single),
@@ -269,17 +185,17 @@ def claim_5(changes: Changes) -> Claim:
         "heavier: heading and east coalesce to a stable oscillation": bool(coupled[-1])
         and lateral[-1] == aside[-1]
         and lateral[-1].real < 0,
-        "its damping falls": bool(coupled.sum() > 1) and _falls(damping[coupled]),
+        "its damping falls": bool(coupled.sum() > 1) and falls(damping[coupled]),
         "vertical moves less than with the nose cable": float(np.ptp(vertical.real))
-        < float(np.ptp(np.concatenate([_values(one, "vertical"), nose]).real)),
+        < float(np.ptp(np.concatenate([followed(one, "vertical"), nose]).real)),
     }
     numbers = {
         "coalescence of surge and north at diameter [m], one and two cables": [single, double],
         "light: heading and east with their names exchanged": bool(
             heading[-1].imag == 0 and east[-1].imag == 0 and heading[-1].real < 0 < east[-1].real
         ),
-        **{f"light {name}": ends for name, ends in _ends(light, "heading", "east").items()},
-        **{f"heavy {name}": ends for name, ends in _ends(heavy, "heading", "east", "vertical").items()},
+        **{f"light {name}": ends for name, ends in ends(light, "heading", "east").items()},
+        **{f"heavy {name}": ends for name, ends in ends(heavy, "heading", "east", "vertical").items()},
     }
     return Claim(
         "L5", "two side cables: the opposite of one in heading and east, then a second oscillation", parts, numbers
@@ -291,20 +207,20 @@ def claim_6(changes: Changes) -> Claim:
     scenario = load_scenario("docking", changes)
     forward, down = bottom_line(scenario)
     found = sweep(scenario, {"cables.nose.tether_point.0": forward, "cables.nose.tether_point.2": down})
-    where = _met(found, "coalesce", "heading", "east")
-    heading, pendulum, vertical = (_values(found, name) for name in ("heading", "pendulum", "vertical"))
+    where = where_met(found, "coalesce", "heading", "east")
+    heading, pendulum, vertical = (followed(found, name) for name in ("heading", "pendulum", "vertical"))
     aft = forward <= 3.77 + 1e-9
     frequency, damping = np.abs(heading[aft].imag), -heading[aft].real / np.abs(heading[aft])
     parts = {
         "heading and east are real at the nose": bool(heading[0].imag == 0),
         "they coalesce between 5.37 and 3.77 m ahead of B": where is not None and 3.77 <= where <= 5.37,
-        "behind, the frequency rises and damping falls": _rises(frequency) and _falls(damping),
+        "behind, the frequency rises and damping falls": rises(frequency) and falls(damping),
         "and stay stable": bool(np.all(heading[aft].real < 0)),
         "pendulum stays unstable": bool(np.all(pendulum.real > 0)),
         "vertical becomes unstable": bool(vertical[0].real < 0 < vertical[-1].real),
     }
     numbers = {
-        **_ends(found, "heading", "east", "pendulum", "vertical", "surge"),
+        **ends(found, "heading", "east", "pendulum", "vertical", "surge"),
         "heading and east coalesce at [m] ahead of B": where,
         "points trimmed": int(found.trimmed.sum()),
         "points": len(found.outcomes),
@@ -315,20 +231,20 @@ def claim_6(changes: Changes) -> Claim:
 def claim_7(changes: Changes) -> Claim:
     """L7: wind from 6 to 12 m/s."""
     found = sweep(load_scenario("docking", changes), {"wind.speed": np.linspace(6.0, 12.0, 13)})
-    pitch, yaw, pendulum = (_values(found, name) for name in ("pitch subsidence", "yaw subsidence", "pendulum"))
+    pitch, yaw, pendulum = (followed(found, name) for name in ("pitch subsidence", "yaw subsidence", "pendulum"))
     damping = -pendulum.real / np.abs(pendulum)
     other = found.track("pendulum 2")
-    split = _met(found, "split", "pendulum", "pendulum 2")
+    split = where_met(found, "split", "pendulum", "pendulum 2")
     before = found.values["wind.speed"] < (np.inf if split is None else split)
     parts = {
-        "pitch subsidence becomes more stable": _falls(pitch.real),
-        "yaw subsidence becomes more stable": _falls(yaw.real),
-        "the damping of the pendulum rises": _rises(damping[before]),
+        "pitch subsidence becomes more stable": falls(pitch.real),
+        "yaw subsidence becomes more stable": falls(yaw.real),
+        "the damping of the pendulum rises": rises(damping[before]),
         "it splits into two real modes": split is not None,
         "one of them is unstable": split is not None and bool(max(pendulum[-1].real, other[-1].real) > 0),
     }
     numbers = {
-        **_ends(found, "pitch subsidence", "yaw subsidence", "pendulum", "vertical"),
+        **ends(found, "pitch subsidence", "yaw subsidence", "pendulum", "vertical"),
         "damping of the pendulum, first and last": [float(damping[0]), float(damping[-1])],
         "pendulum splits at wind [m/s]": split,
     }
@@ -340,14 +256,14 @@ def claim_8(changes: Changes) -> Claim:
     found = sweep(load_scenario("docking", changes), {"trim.elongation": ELONGATIONS})
     value = found.values["trim.elongation"]
     parts: dict[str, bool] = {}
-    numbers: dict[str, Any] = dict(_ends(found, "pendulum", "surge"))
+    numbers: dict[str, Any] = dict(ends(found, "pendulum", "surge"))
     for name, label in (("pendulum", "pendulum"), ("surge", "surge–north")):
-        track = _values(found, name)
+        track = followed(found, name)
         frequency, damping = np.abs(track.imag), -track.real / np.abs(track)
         slope = np.abs(np.diff(track) / np.diff(value))
         low, high = float(slope[value[1:] <= 0.9].mean()), float(slope[value[1:] > 0.9].mean())
-        parts[f"the frequency of {label} rises"] = _rises(frequency)
-        parts[f"the damping of {label} falls"] = _falls(damping)
+        parts[f"the frequency of {label} rises"] = rises(frequency)
+        parts[f"the damping of {label} falls"] = falls(damping)
         parts[f"{label} is more than three times as sensitive above 0.9"] = high > 3.0 * low
         numbers[f"sensitivity of {label} below and above 0.9 [1/s]"] = [low, high]
         numbers[f"damping of {label}, first and last"] = [float(damping[0]), float(damping[-1])]
@@ -364,7 +280,7 @@ def claim_9(changes: Changes) -> Claim:
     lacking = [outcome is not TrimOutcome.converged for outcome in found.outcomes]
     first = next((value for value, lack in zip(values, lacking, strict=True) if lack), None)
     parts = {
-        "the throttle needed rises": _rises(largest),
+        "the throttle needed rises": rises(largest),
         "beyond some elongation up to 1 it passes nominal": first is not None and first <= 1.0,
     }
     numbers = {

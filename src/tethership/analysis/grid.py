@@ -1,0 +1,59 @@
+"""The points of a sweep: parameters moved along axes, checked, and lines filled up. Depends on: scenario, errors."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from tethership.errors import ConfigError
+from tethership.scenario import Scenario
+from tethership.scenario.parameters import Parameter, find_parameter, list_parameters, scenario_at
+
+Axis = Mapping[str, Sequence[float] | np.ndarray]
+"""Parameters moved together along one axis: name → values [SI]."""
+
+
+def lay_grid(scenario: Scenario, axes: tuple[Axis, ...]) -> tuple[list[Parameter], np.ndarray, tuple[int, ...]]:
+    """Return the parameters, their values at all points (points, parameters) and the shape of the grid."""
+    known = list_parameters(scenario.config)
+    parameters: list[Parameter] = []
+    columns: list[tuple[int, np.ndarray]] = []
+    shape: list[int] = []
+    if not axes or not all(axes):
+        raise ConfigError("sweep: name at least one parameter with its values")
+    for index, axis in enumerate(axes):
+        lengths = {name: len(np.atleast_1d(values)) for name, values in axis.items()}
+        if len(set(lengths.values())) != 1:
+            raise ConfigError(f"sweep: parameters moved together need as many values each; there are {lengths}")
+        shape.append(next(iter(lengths.values())))
+        for name, values in axis.items():
+            parameter = find_parameter(known, name, scenario.name)
+            if parameter.name in [other.name for other in parameters]:
+                raise ConfigError(f"sweep: {parameter.name} is named twice; name each parameter once")
+            parameters.append(parameter)
+            columns.append((index, _checked(name, np.atleast_1d(np.asarray(values, dtype=float)))))
+    mesh = np.meshgrid(*[np.arange(count) for count in shape], indexing="ij")
+    grid = np.stack([values[mesh[index].ravel()] for index, values in columns], axis=1)
+    for row in {0, len(grid) - 1}:
+        scenario_at(scenario, dict(zip([p.name for p in parameters], grid[row], strict=True)))
+    return parameters, grid, tuple(shape)
+
+
+def _checked(name: str, values: np.ndarray) -> np.ndarray:
+    """Return the values of a parameter, or raise ConfigError."""
+    if values.size == 0:
+        raise ConfigError(f"sweep: the range of {name} is empty; give at least one value")
+    if not np.isfinite(values).all():
+        raise ConfigError(f"sweep: the range of {name} has values that are not finite numbers")
+    return values
+
+
+def fill_lines(grid: np.ndarray, count: int, fill: int) -> tuple[np.ndarray, int]:
+    """Return the points with `fill` − 1 more between neighbours of every line, and how many a line then has."""
+    lines = grid.reshape(-1, count, grid.shape[1])
+    places = np.linspace(0.0, count - 1.0, (count - 1) * fill + 1)
+    before = np.minimum(places.astype(int), max(count - 2, 0))
+    share = (places - before)[:, None]
+    after = np.minimum(before + 1, count - 1)
+    fine = (1.0 - share) * lines[:, before] + share * lines[:, after]
+    fine[:, ::fill] = lines
+    return fine.reshape(-1, grid.shape[1]), len(places)
