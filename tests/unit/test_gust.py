@@ -12,7 +12,7 @@ import pytest
 from scipy.integrate import quad
 
 from tethership import load_scenario
-from tethership.physics.gust import CosineGust
+from tethership.physics.gust import CosineGust, WindChange
 
 START, PERIOD = 20.0, 5.0
 AMPLITUDE = np.array([0.3, 2.0, -0.4])
@@ -79,3 +79,12 @@ def test_the_papers_gust_is_a_third_of_the_wind_from_the_west(wind):
     before, peak = (np.asarray(environment.wind_at(here, jnp.asarray(t))) for t in (10.0, 22.5))
     np.testing.assert_allclose(before, [-wind, 0, 0], atol=1e-14)  # from the north: air moves south
     np.testing.assert_allclose(peak - before, [0, wind / 3, 0], atol=1e-14)  # from the west: air moves east
+
+
+def test_wind_change_is_linear_in_time():
+    """The wind as an input of a linear model: Δv_w at t = 0 and its rate, nothing to step on."""
+    change = WindChange(jnp.array([1.0, -2.0, 0.5]), jnp.array([0.1, 0.0, -0.3]))
+    np.testing.assert_allclose(change.velocity(jnp.asarray(0.0)), [1.0, -2.0, 0.5], rtol=0, atol=0)
+    np.testing.assert_allclose(change.velocity(jnp.asarray(2.0)), [1.2, -2.0, -0.1], rtol=1e-15)
+    np.testing.assert_allclose(jax.jacfwd(change.velocity)(jnp.asarray(1.0)), [0.1, 0.0, -0.3], rtol=1e-15)
+    assert change.corners().shape == (0,)

@@ -193,3 +193,17 @@ def test_hull_is_a_pytree_that_can_be_batched():
     assert isinstance(shapes, BodyOfRevolution)
     volumes = jax.vmap(lambda shape: shape.volume())(shapes)
     np.testing.assert_allclose(np.asarray(volumes / volumes[0]), [1.0, 4.0, 16.0], rtol=1e-14)  # 𝒱 ∼ D²
+
+
+def test_strips_from_the_nose_have_finite_slopes():
+    """√(ξ/L) at ξ = 0 has no slope: with respect to the hull's length nothing may become NaN, in forward or reverse."""
+
+    def area(length):
+        hull = gertler(length, jnp.asarray(4.0), jnp.array([1.0, -1.0, 0.0, 0.0, 0.0, 0.0]))
+        strips = hull.strips(jnp.zeros(()), 0.75 * length, 16)
+        return jnp.sum(2.0 * strips.radius * strips.width)
+
+    length = jnp.asarray(16.0)
+    # The shape scales with the length: the projected area is proportional to it.
+    for slope in (jax.jacfwd(area)(length), jax.grad(area)(length)):
+        np.testing.assert_allclose(slope, area(length) / length, rtol=1e-12)

@@ -72,7 +72,7 @@ def test_verdicts_follow_the_ship(claims):
 
 
 def test_the_joint_is_what_sets_the_limit_of_trim(claims):
-    """PHYSICS of L9: in `published` max |δ| is 0.14 at 0.95, 0.21 at 0.99, 1.68 at 0.995; the exact catenary is slack."""
+    """In `published` max |δ| is 0.14 at 0.95, 0.21 at 0.99, 1.68 at 0.995; the exact catenary is slack."""
     assert claims["published"]["L9"].holds
     assert not claims["consistent"]["L9"].holds
     throttle = dict(

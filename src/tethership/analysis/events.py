@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tethership.analysis.spectrum import Complex
+from tethership.analysis.spectrum import Complex, Real
 from tethership.analysis.tracking import pairs_of, partners_of
 
 
@@ -85,7 +85,7 @@ def _meetings(step: _Step) -> Iterator[Event]:
         for kind, pairs in (("split", first - second), ("coalesce", second - first)):
             for i, j in sorted(pairs):
                 start, end = ((old[i] - old[j]) ** 2).real, ((new[i] - new[j]) ** 2).real
-                share = start / (start - end) if start * end < 0 else 0.5
+                share = start / (start - end) if start * end <= 0 and start != end else 0.5
                 yield step.event(kind, (i, j), before, share)
 
 
@@ -95,14 +95,32 @@ def _crossings(step: _Step) -> Iterator[Event]:
     for i, j in itertools.combinations(range(step.values.shape[1]), 2):
         apart = (step.values[:, i] - step.values[:, j]).real
         both = real[:, i] & real[:, j]
-        for before in map(int, np.flatnonzero((apart[:-1] * apart[1:] < 0) & both[:-1] & both[1:])):
-            yield step.event("cross", (i, j), before, apart[before] / (apart[before] - apart[before + 1]))
+        for before, after in _sign_changes(apart):
+            if both[before : after + 1].all():
+                place, share = _zero(apart, before, after)
+                yield step.event("cross", (i, j), place, share)
 
 
 def _axis(step: _Step) -> Iterator[Event]:
     """Yield passages of the imaginary axis; of a pair only the upper member's."""
     for i in range(step.values.shape[1]):
         growth, upper = step.values[:, i].real, step.values[:, i].imag >= 0
-        for before in map(int, np.flatnonzero((growth[:-1] * growth[1:] < 0) & upper[:-1] & upper[1:])):
-            kind = "unstable" if growth[before + 1] > 0 else "stable"
-            yield step.event(kind, (i,), before, growth[before] / (growth[before] - growth[before + 1]))
+        for before, after in _sign_changes(growth):
+            if upper[before : after + 1].all():
+                place, share = _zero(growth, before, after)
+                yield step.event("unstable" if growth[after] > 0 else "stable", (i,), place, share)
+
+
+def _sign_changes(values: Real) -> Iterator[tuple[int, int]]:
+    """Yield points between which a number changes its sign; zeros between them may be passed."""
+    nonzero = np.flatnonzero(values)
+    for before, after in itertools.pairwise(nonzero):
+        if values[before] * values[after] < 0:
+            yield int(before), int(after)
+
+
+def _zero(values: Real, before: int, after: int) -> tuple[int, float]:
+    """Return the point from which, and the share of the way at which, a number that changes its sign is zero."""
+    if after > before + 1:
+        return before + (after - before) // 2 - 1, 1.0
+    return before, float(values[before] / (values[before] - values[after]))

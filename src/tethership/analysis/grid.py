@@ -21,25 +21,44 @@ def lay_grid(scenario: Scenario, axes: tuple[Axis, ...]) -> tuple[list[Parameter
     if not axes or not all(axes):
         raise ConfigError("sweep: name at least one parameter with its values")
     for index, axis in enumerate(axes):
-        lengths = {name: len(np.atleast_1d(values)) for name, values in axis.items()}
+        checked = {name: _checked(name, values) for name, values in axis.items()}
+        lengths = {name: len(values) for name, values in checked.items()}
         if len(set(lengths.values())) != 1:
             raise ConfigError(f"sweep: parameters moved together need as many values each; there are {lengths}")
         shape.append(next(iter(lengths.values())))
-        for name, values in axis.items():
+        for name, values in checked.items():
             parameter = find_parameter(known, name, scenario.name)
-            if parameter.name in [other.name for other in parameters]:
-                raise ConfigError(f"sweep: {parameter.name} is named twice; name each parameter once")
+            _check_alone(parameter, parameters)
             parameters.append(parameter)
-            columns.append((index, _checked(name, np.atleast_1d(np.asarray(values, dtype=float)))))
+            columns.append((index, values))
     mesh = np.meshgrid(*[np.arange(count) for count in shape], indexing="ij")
     grid = np.stack([values[mesh[index].ravel()] for index, values in columns], axis=1)
-    for row in {0, len(grid) - 1}:
-        scenario_at(scenario, dict(zip([p.name for p in parameters], grid[row], strict=True)))
+    names = [parameter.name for parameter in parameters]
+    extremes = {0, len(grid) - 1, *np.argmin(grid, axis=0).tolist(), *np.argmax(grid, axis=0).tolist()}
+    for row in sorted(extremes):  # bounds are intervals: what the extremes may, all between may
+        scenario_at(scenario, dict(zip(names, grid[row], strict=True)))
     return parameters, grid, tuple(shape)
 
 
-def _checked(name: str, values: np.ndarray) -> np.ndarray:
+def _check_alone(parameter: Parameter, others: list[Parameter]) -> None:
+    """Raise ConfigError where a parameter moves a number that another one moves."""
+    for other in others:
+        if other.name == parameter.name:
+            raise ConfigError(f"sweep: {parameter.name} is named twice; name each parameter once")
+        if set(other.places) & set(parameter.places):
+            raise ConfigError(f"sweep: {other.name} and {parameter.name} move the same number; name one of them")
+
+
+def _checked(name: str, given: Sequence[float] | np.ndarray) -> np.ndarray:
     """Return the values of a parameter, or raise ConfigError."""
+    try:
+        values = np.atleast_1d(np.asarray(given, dtype=float))
+    except (TypeError, ValueError) as error:
+        raise ConfigError(
+            f"sweep: the range of {name} is {given!r}, no list of numbers; give e.g. [6, 9, 12]"
+        ) from error
+    if values.ndim != 1:
+        raise ConfigError(f"sweep: the range of {name} is a table, not a list of numbers; give e.g. [6, 9, 12]")
     if values.size == 0:
         raise ConfigError(f"sweep: the range of {name} is empty; give at least one value")
     if not np.isfinite(values).all():

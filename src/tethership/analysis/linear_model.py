@@ -27,6 +27,9 @@ KIND = "tethership linear model"
 FORMAT = 1
 """Version of the layout of these files."""
 
+WHOLE = ("A", "U", "comparable", "state_value", "input_value", "state_unit", "input_unit")
+"""Variables of such a file."""
+
 LONGITUDINAL = ("u", "w", "q", "theta", "north", "down")
 LATERAL = ("v", "p", "r", "phi", "psi", "east")
 POSITION = ("north", "east", "down")
@@ -100,11 +103,17 @@ class LinearModel:
         return self.select([name for name in self.states if name not in POSITION])
 
     def longitudinal(self) -> "LinearModel":
-        """Return the model of u, w, q, θ, north, down (those that are there); see `_part` for errors."""
-        return self._part(LONGITUDINAL)
+        """Return the model of u, w, q, θ, north, down (those that are there), cable lengths included.
+
+        Raises
+        ------
+        ConfigError
+            They are coupled with the lateral states, so that this would be another ship.
+        """
+        return self._part((*LONGITUDINAL, *(name for name in self.states if name.startswith("length_"))))
 
     def lateral(self) -> "LinearModel":
-        """Return the model of v, p, r, φ, ψ, east (those that are there); see `_part` for errors."""
+        """Return the model of v, p, r, φ, ψ, east (those that are there); raises as `longitudinal`."""
         return self._part(LATERAL)
 
     def coupling(self, states: Sequence[str]) -> float:
@@ -186,6 +195,9 @@ class LinearModel:
     def load(cls, path: str | Path) -> "LinearModel":
         """Return the model of a file; raises ConfigError where it is none."""
         data = store.read(Path(path), KIND, FORMAT)
+        missing = set(WHOLE) - set(data.variables)
+        if missing:
+            raise ConfigError(f"{path} is no whole linear model: {', '.join(sorted(missing))} is missing")
         return cls(
             data["A"].values,
             data["U"].values,
@@ -201,7 +213,11 @@ class LinearModel:
 
 
 def _places(chosen: Sequence[str], known: Sequence[str], what: str) -> list[int]:
-    """Return the places of names, or raise ConfigError that offers the nearest."""
+    """Return the places of names, or raise ConfigError that offers the nearest, or for none or the same twice."""
+    if what == "state" and not chosen:
+        raise ConfigError("select: no state is left; name at least one")
+    if len(set(chosen)) != len(chosen):
+        raise ConfigError(f"select: a {what} is named twice in {', '.join(chosen)}; name each once")
     for name in chosen:
         if name not in known:
             raise ConfigError(f"the model has no {what} {name!r}{suggestion(name, known)} It has: {', '.join(known)}")

@@ -138,6 +138,8 @@ def linearize(
     plant = system.system if isinstance(system, Scenario) else system
     state, command = (point.state, point.command) if isinstance(point, TrimPoint) else point
     vector, inputs = state.as_vector(), input_vector(plant, command)
+    if not np.isfinite(np.asarray(vector)).all():
+        raise ConfigError("linearize: the point has states that are not finite; check its state")
     _check_dividable(plant, state)
     exact, comparable, residual = _exact(plant, vector, inputs)
     if require_equilibrium:

@@ -103,8 +103,9 @@ class Modes(NamedTuple):
         ConfigError
             There is none; the nearest name is offered.
         """
-        exact = [mode for mode in self.modes if mode.name == name.replace("-north", "–north")]
-        part = [mode for mode in self.modes if name.split()[0] in mode.name.split("–")]
+        plain = name.replace("–", "-")
+        exact = [mode for mode in self.modes if mode.name.replace("–", "-") == plain]
+        part = [mode for mode in self.modes if plain.removesuffix(" subsidence") in mode.name.split("–")]
         chosen = exact or part
         if not chosen:
             raise ConfigError(

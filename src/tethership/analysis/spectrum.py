@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.linalg
+import scipy.optimize
 from numpy.typing import NDArray
 
 Real = NDArray[np.float64]
@@ -66,7 +67,7 @@ def analyse(matrix: Real, error: float = ROUNDING) -> Spectrum:
     size = max(float(np.linalg.norm(matrix, 2)), 1e-300)
     cosine = np.abs(np.sum(left.conj() * right, axis=0))
     slack = np.minimum(error * size / np.maximum(cosine, 1e-300), 1e-3 * size)
-    groups = _grouped(values, slack)
+    groups = _grouped(values, slack, size)
     vectors: Complex = right / right[np.argmax(np.abs(right), axis=0), np.arange(len(values))]
     participation = np.abs(left.conj() * right) / np.maximum(cosine, 1e-300)
     projectors, blocks = [], []
@@ -82,11 +83,22 @@ def analyse(matrix: Real, error: float = ROUNDING) -> Spectrum:
     return Spectrum(values, vectors, participation, groups, tuple(projectors), tuple(blocks))
 
 
-def _grouped(values: Complex, slack: Real) -> tuple[tuple[int, ...], ...]:
-    """Return the groups of eigenvalues that rounding cannot tell apart: closer than the slack of both."""
+def _grouped(values: Complex, slack: Real, size: float) -> tuple[tuple[int, ...], ...]:
+    """Return the groups of eigenvalues that rounding cannot tell apart.
+
+    Notes
+    -----
+    Two are linked that are closer than the slack of both, or, closer still, than that of one of them: a third zero
+    beside a defective pair of zeros is as exact as they are not.
+    """
+    certain = 10.0 * np.sqrt(ROUNDING) * size
     groups: list[set[int]] = []
     for i in range(len(values)):
-        near = {j for j in range(i) if abs(values[i] - values[j]) <= min(slack[i], slack[j])}
+        distance = np.abs(values[:i] - values[i])
+        linked = (distance <= np.minimum(slack[:i], slack[i])) | (
+            distance <= np.minimum(np.maximum(slack[:i], slack[i]), certain)
+        )
+        near = set(np.flatnonzero(linked).tolist())
         merged = {i}.union(*(group for group in groups if group & near))
         groups = [group for group in groups if not group & near] + [merged]
     return tuple(tuple(sorted(group)) for group in sorted(groups, key=min))
@@ -97,14 +109,18 @@ def _projector(matrix: Real, values: Complex, group: tuple[int, ...]) -> tuple[C
 
     Notes
     -----
-    A = Q [[T₁₁, T₁₂], [0, T₂₂]] Qᴴ with the group first; T₁₁X − XT₂₂ = −T₁₂ gives P = Q [[I, −X], [0, 0]] Qᴴ.
+    A = Q [[T₁₁, T₁₂], [0, T₂₂]] Qᴴ with the group first; T₁₁X − XT₂₂ = −T₁₂ gives P = Q [[I, −X], [0, 0]] Qᴴ. The
+    diagonal of T has eigenvalues of its own rounding: they are paired with the given ones, all at once.
     """
-    inside = set(group)
+    complex_matrix = matrix.astype(np.complex128)
+    own = np.diag(scipy.linalg.schur(complex_matrix, output="complex")[0])
+    _, paired = scipy.optimize.linear_sum_assignment(np.abs(values[:, None] - own[None, :]))
+    wanted = own[paired[list(group)]]
 
     def chosen(value: complex) -> bool:
-        return int(np.argmin(np.abs(values - value))) in inside
+        return bool(np.any(wanted == value))
 
-    triangle, basis, count = scipy.linalg.schur(matrix.astype(complex), output="complex", sort=chosen)  # pyright: ignore
+    triangle, basis, count = scipy.linalg.schur(complex_matrix, output="complex", sort=chosen)  # pyright: ignore
     head, corner, tail = triangle[:count, :count], triangle[:count, count:], triangle[count:, count:]
     solution = scipy.linalg.solve_sylvester(head, -tail, -corner) if count < len(values) else np.zeros((count, 0))
     projector = basis[:, :count] @ np.hstack([np.eye(count), -solution]) @ basis.conj().T

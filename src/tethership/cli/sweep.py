@@ -105,7 +105,8 @@ def _figures(
     from tethership.reproduction import linear_figure
 
     files, shown, sweeps = [], {}, []
-    for name in ("consistent", "published") if formulation is None else (formulation,):
+    chosen = formulation or changes.get("formulation")
+    for name in ("consistent", "published") if chosen is None else (chosen,):
         with stage(f"figure {number}, {name}"):
             drawn = linear_figure(number, name, changes)
         with stage("draw"):
@@ -167,6 +168,8 @@ def _axis(scenario: Scenario, text: str) -> dict[str, np.ndarray]:
         name, equals, values = part.partition("=")
         if not equals or not name or not values:
             raise ConfigError(f"--over {part!r} is no range; write --over name=from:to:points, e.g. wind=6:12:13")
+        if name.strip() in axis:
+            raise ConfigError(f"--over {text!r}: {name.strip()} is named twice; name each parameter once")
         axis[name.strip()] = _listed(part, values) if values.startswith("[") else _range(scenario, name.strip(), values)
     return axis
 

@@ -11,6 +11,7 @@ import numpy as np
 from tethership.analysis.linearize import linearize
 from tethership.analysis.sweep import Sweep, sweep
 from tethership.analysis.trim import TrimOutcome, trim
+from tethership.errors import ConfigError, suggestion
 from tethership.reproduction.claim import (
     Claim,
     ends,
@@ -320,5 +321,9 @@ def check_claims(
     names : iterable of str, optional
         Only these.
     """
+    chosen = list(CLAIMS if names is None else names)
+    for name in chosen:
+        if name not in CLAIMS:
+            raise ConfigError(f"there is no claim {name!r}{suggestion(name, CLAIMS)} There are: {', '.join(CLAIMS)}")
     changes: Mapping[str, Any] = {"formulation": formulation, **fins(lift_area)}
-    return {name: CLAIMS[name](changes) for name in (CLAIMS if names is None else names)}
+    return {name: CLAIMS[name](changes) for name in chosen}

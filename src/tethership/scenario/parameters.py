@@ -183,6 +183,9 @@ def scenario_at(scenario: Scenario, values: Mapping[str, float]) -> Scenario:
     """
     known = list_parameters(scenario.config)
     chosen = [find_parameter(known, name, scenario.name) for name in values]
+    places = [place for parameter in chosen for place in parameter.places]
+    if len(set(places)) != len(places):
+        raise ConfigError(f"two of {', '.join(values)} are the same number; name each once")
     config = with_values(scenario.config, chosen, [float(value) for value in values.values()])
     document = copy.deepcopy(scenario.document)
     for leaf in (leaf for parameter in chosen for leaf in parameter.leaves):

@@ -15,7 +15,7 @@ from tethership.analysis.sweep import Sweep
 from tethership.errors import ConfigError
 from tethership.reproduction import LinearFigure, Panel
 from tethership.view import style
-from tethership.view.root_locus import SLOWEST, display
+from tethership.view.root_locus import SLOWEST, colour_parameter, display
 
 HOVER = "<b>%{customdata[0]}</b><br>%{customdata[1]}<br>λ = %{customdata[2]} 1/s<extra>%{customdata[3]}</extra>"
 
@@ -32,7 +32,7 @@ def interactive_root_locus(found: Sweep, title: str = "Root locus", parameter: s
     parameter : str, optional
         Which parameter colours the dots; the first if not given.
     """
-    name = next(iter(found.values)) if parameter is None else parameter
+    name = colour_parameter(found, parameter)
     return _assembled([Panel(title, found, name, None, None, slow=False)], title)
 
 

@@ -10,8 +10,10 @@ from matplotlib.lines import Line2D
 from tethership.analysis.modes import Modes
 from tethership.analysis.spectrum import Complex
 from tethership.analysis.sweep import Sweep
+from tethership.errors import ConfigError
 from tethership.reproduction import LinearFigure, Panel
 from tethership.scenario import list_parameters
+from tethership.scenario.parameters import ALIASES
 from tethership.view import style
 
 SLOWEST = 0.4
@@ -32,6 +34,16 @@ def display(name: str, unit: str) -> tuple[str, str, float]:
     if name.endswith("diameter") and "cables" in name:
         return label, "mm", 1e3
     return label, "" if unit == "1" else unit, 1.0
+
+
+def colour_parameter(found: Sweep, name: str | None) -> str:
+    """Return the parameter that colours a sweep; raises ConfigError for one that it does not have."""
+    if name is None:
+        return next(iter(found.values))
+    full = ALIASES.get(name, name)
+    if full not in found.values:
+        raise ConfigError(f"the sweep has no parameter {name!r}; it has {', '.join(found.values)}")
+    return full
 
 
 def plot_root_locus(
@@ -64,7 +76,7 @@ def plot_root_locus(
     """
     if axes is None:
         axes = Figure(figsize=PANEL, layout="constrained").subplots()
-    name = next(iter(found.values)) if parameter is None else parameter
+    name = colour_parameter(found, parameter)
     label, unit, factor = display(name, found.units[name])
     value = found.values[name] * factor
     colours = ScalarMappable(Normalize(float(value.min()), float(value.max())), "viridis")
