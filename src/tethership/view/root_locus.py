@@ -200,7 +200,7 @@ def _marks(axes: Axes, found: Sweep, kept: list[str], star: int | None, free: Mo
     if missing:
         handles.append(Line2D([], [], linestyle="none", label=f"{missing} of {len(found.outcomes)} points: no trim"))
     if handles:
-        axes.legend(handles=handles, fontsize=style.SMALL, loc="upper left", frameon=True, framealpha=0.85)
+        axes.legend(handles=handles, fontsize=style.SMALL, loc="lower left", frameon=True, framealpha=0.85)
 
 
 def _named(axes: Axes, found: Sweep, kept: list[str]) -> None:
