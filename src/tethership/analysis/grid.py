@@ -6,7 +6,7 @@ import numpy as np
 
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario
-from tethership.scenario.parameters import Parameter, find_parameter, list_parameters, scenario_at
+from tethership.scenario.parameters import Parameter, check_values, find_parameter, list_parameters
 
 Axis = Mapping[str, Sequence[float] | np.ndarray]
 """Parameters moved together along one axis: name → values [SI]."""
@@ -33,10 +33,9 @@ def lay_grid(scenario: Scenario, axes: tuple[Axis, ...]) -> tuple[list[Parameter
             columns.append((index, values))
     mesh = np.meshgrid(*[np.arange(count) for count in shape], indexing="ij")
     grid = np.stack([values[mesh[index].ravel()] for index, values in columns], axis=1)
-    names = [parameter.name for parameter in parameters]
     extremes = {0, len(grid) - 1, *np.argmin(grid, axis=0).tolist(), *np.argmax(grid, axis=0).tolist()}
     for row in sorted(extremes):  # bounds are intervals: what the extremes may, all between may
-        scenario_at(scenario, dict(zip(names, grid[row], strict=True)))
+        check_values(scenario, parameters, grid[row].tolist())
     return parameters, grid, tuple(shape)
 
 

@@ -92,12 +92,15 @@ def comparable_coordinates(plant: TetheredAirship, state: Float[Array, "12"]) ->
 @eqx.filter_jit
 def _exact(
     plant: TetheredAirship, state: Float[Array, "12"], inputs: Float[Array, "inputs"]
-) -> tuple[Matrices, Float[Array, "12 12"], Float[Array, "6"]]:
-    """Return A and U, the comparable coordinates, and the force and moment left over [N, N m]."""
+) -> tuple[Matrices, Float[Array, "12 12"], Float[Array, "6"], Float[Array, "6 6"]]:
+    """Return A and U, the comparable coordinates, the force and moment left over [N, N m], Mⁱ + Mᵃ over half hulls."""
     here = State.from_vector(state)
     left = -plant.ship.body.gyroscopic(here.velocity, here.rates).as_vector()
     residual = sum(loads(plant, state, inputs).values(), left)
-    return differentiate(plant, state, inputs), comparable_coordinates(plant, state), residual
+    reach = 0.5 * plant.ship.outline.station[-1]
+    scale = jnp.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]) + jnp.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]) * reach
+    mass = mass_matrix(here, plant.ship, plant.environment) / jnp.outer(scale, scale)
+    return differentiate(plant, state, inputs), comparable_coordinates(plant, state), residual, mass
 
 
 def linearize(
@@ -140,8 +143,8 @@ def linearize(
     vector, inputs = state.as_vector(), input_vector(plant, command)
     if not np.isfinite(np.asarray(vector)).all():
         raise ConfigError("linearize: the point has states that are not finite; check its state")
-    _check_dividable(plant, state)
-    exact, comparable, residual = _exact(plant, vector, inputs)
+    exact, comparable, residual, mass = _exact(plant, vector, inputs)
+    _check_dividable(np.asarray(mass), float(state.attitude[1]))
     if require_equilibrium:
         _check_equilibrium(plant, np.asarray(residual))
     matrices = _by_route(route, exact, plant, vector, inputs)
@@ -161,22 +164,18 @@ def linearize(
     return _with_lengths(model, plant) if length_states else model
 
 
-def _check_dividable(plant: TetheredAirship, state: State) -> None:
-    """Raise ConfigError where a mass matrix or an attitude cannot be divided by."""
-    reach = 0.5 * float(plant.ship.outline.station[-1])
-    scale = np.array([1.0, 1.0, 1.0, reach, reach, reach])
-    matrix = np.asarray(mass_matrix(state, plant.ship, plant.environment)) / np.outer(scale, scale)
-    condition = np.linalg.cond(matrix) if np.isfinite(matrix).all() else np.inf
+def _check_dividable(mass: np.ndarray, pitch: float) -> None:
+    """Raise ConfigError where a mass matrix (lengths in half hulls) or a pitch [rad] cannot be divided by."""
+    condition = np.linalg.cond(mass) if np.isfinite(mass).all() else np.inf
     if condition > WORST_CONDITION:
         raise ConfigError(
             f"linearize: the mass matrix is too singular to divide by (condition number {condition:.2g}, at most "
             f"{WORST_CONDITION:.0g}); check mass, inertia and apparent mass of the vehicle"
         )
-    level = abs(float(np.cos(state.attitude[1])))
-    if level < 1e-6:
+    if abs(np.cos(pitch)) < 1e-6:
         raise ConfigError(
-            f"linearize: at a pitch of {np.degrees(float(state.attitude[1])):.4g}° Euler angles are singular: there is "
-            "no linear model in them; trim within ±80°"
+            f"linearize: at a pitch of {np.degrees(pitch):.4g}° Euler angles are singular: there is no linear model in "
+            "them; trim within ±80°"
         )
 
 

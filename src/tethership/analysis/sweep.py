@@ -13,11 +13,10 @@ import jax.numpy as jnp
 import numpy as np
 
 from tethership.analysis.continuation import Batch, in_equilibrium, solve_points
-from tethership.analysis.equilibrium import solve
 from tethership.analysis.events import find_events
 from tethership.analysis.grid import Axis, fill_lines, lay_grid
 from tethership.analysis.mode_names import assign, mode_name, slots_of, track_names
-from tethership.analysis.posing import Question, ask, posed
+from tethership.analysis.posing import Question, ask
 from tethership.analysis.spectrum import Complex
 from tethership.analysis.tracking import (
     Path,
@@ -27,7 +26,7 @@ from tethership.analysis.tracking import (
     named_order,
     participation,
 )
-from tethership.analysis.trim import TrimOutcome, trim
+from tethership.analysis.trim import TrimOutcome, solved
 from tethership.errors import ConfigError, TethershipError
 from tethership.scenario import Scenario
 from tethership.scenario.parameters import Parameter, find_parameter, list_parameters, scenario_at
@@ -224,11 +223,11 @@ def _reference(
     for values in candidates:
         try:
             here = scenario if values is own else scenario_at(scenario, dict(zip(names, values, strict=True)))
-            found = trim(here)
+            unknowns, found = solved(here, question)
         except TethershipError:
             continue
         if found.outcome is not TrimOutcome.no_equilibrium:
-            return values, solve(posed(here.config.as_arrays(), here.system, question))
+            return values, unknowns
     return own, start
 
 

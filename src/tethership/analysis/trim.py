@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from tethership.analysis.equilibrium import RESIDUAL_LIMIT, described, solve
-from tethership.analysis.posing import ask, posed
+from tethership.analysis.posing import Question, ask, posed
 from tethership.errors import SolveError
 from tethership.scenario import Scenario
 from tethership.spatial import STANDARD_GRAVITY
@@ -90,13 +90,18 @@ def trim(
     SolveError
         With `throw`, no equilibrium.
     """
-    plant = scenario.system
-    thrusters = [thruster.name for thruster in scenario.config.vehicle.thrusters]
-    problem = posed(scenario.config.as_arrays(), plant, ask(scenario, unknowns, fixed))
-    point = _judged(plant, thrusters, *described(problem, jnp.asarray(solve(problem))))
+    _, point = solved(scenario, ask(scenario, unknowns, fixed))
     if throw and point.outcome is TrimOutcome.no_equilibrium:
         raise SolveError(f"{point.outcome.value} Residual: {np.asarray(point.residual)} N, N m")
     return point
+
+
+def solved(scenario: Scenario, question: Question) -> tuple[np.ndarray, TrimPoint]:
+    """Return the unknowns, in their units, and the point that answer what a scenario's trim asks."""
+    thrusters = [thruster.name for thruster in scenario.config.vehicle.thrusters]
+    problem = posed(scenario.config.as_arrays(), scenario.system, question)
+    values = solve(problem)
+    return values, _judged(scenario.system, thrusters, *described(problem, jnp.asarray(values)))
 
 
 def _judged(plant: TetheredAirship, thrusters: list[str], *found: Any) -> TrimPoint:

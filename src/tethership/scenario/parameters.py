@@ -7,15 +7,15 @@ must stay equal are one parameter: the off-diagonal entries of the inertia matri
 
 import copy
 import difflib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple, get_args
 
 import jax
 from jax.tree_util import DictKey, GetAttrKey, SequenceKey
 
 from tethership.errors import ConfigError
-from tethership.scenario.changes import change
-from tethership.scenario.load import Scenario, from_document
+from tethership.scenario.changes import Document, change
+from tethership.scenario.load import Scenario, from_document, validated
 from tethership.scenario.quantity import Quantity, Table
 from tethership.scenario.schema import ScenarioConfig
 
@@ -183,14 +183,25 @@ def scenario_at(scenario: Scenario, values: Mapping[str, float]) -> Scenario:
     """
     known = list_parameters(scenario.config)
     chosen = [find_parameter(known, name, scenario.name) for name in values]
-    places = [place for parameter in chosen for place in parameter.places]
+    return from_document(_document_at(scenario, chosen, list(values.values())), scenario.name)
+
+
+def check_values(scenario: Scenario, parameters: Sequence[Parameter], values: Sequence[float]) -> None:
+    """Raise ConfigError as `scenario_at` where parameters cannot have values [SI]; no plant is built."""
+    validated(ScenarioConfig, _document_at(scenario, parameters, values), scenario.name)
+
+
+def _document_at(scenario: Scenario, parameters: Sequence[Parameter], values: Sequence[float]) -> Document:
+    """Return the scenario's document with parameters set."""
+    places = [place for parameter in parameters for place in parameter.places]
     if len(set(places)) != len(places):
-        raise ConfigError(f"two of {', '.join(values)} are the same number; name each once")
-    config = with_values(scenario.config, chosen, [float(value) for value in values.values()])
+        names = ", ".join(parameter.name for parameter in parameters)
+        raise ConfigError(f"two of {names} are the same number; name each once")
+    config = with_values(scenario.config, parameters, [float(value) for value in values])
     document = copy.deepcopy(scenario.document)
-    for leaf in (leaf for parameter in chosen for leaf in parameter.leaves):
+    for leaf in (leaf for parameter in parameters for leaf in parameter.leaves):
         change(document, leaf.key, _listed(_value_at(config, leaf.key)), scenario.name)
-    return from_document(document, scenario.name)
+    return document
 
 
 def _value_at(config: ScenarioConfig, key: str) -> Any:
