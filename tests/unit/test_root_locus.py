@@ -268,7 +268,12 @@ def test_hover_tells_parameter_eigenvalue_and_mode(found):
     figure = interactive_root_locus(found, "Title of mine", parameter="trim.elongation")
     assert isinstance(figure, go.Figure)
     assert figure.layout.title.text == "Title of mine"
-    traces = {trace.name: trace for trace in figure.data}
+    assert [note.text for note in figure.layout.annotations] == ["all modes", "slow modes"]
+    panel = [trace for trace in figure.data if trace.xaxis == "x"]  # the second one has the same data, zoomed
+    assert len(figure.data) == 2 * len(panel)
+    traces = {trace.name: trace for trace in panel}
+    star = traces.pop("reference")  # the scenario's own elongation is among the points
+    assert sorted(star.x) == pytest.approx(sorted(found.eigenvalues[0].real), rel=1e-12)
     assert set(traces) == set(found.tracks)
     names = [found.names_at(point) for point in (0, 1)]
     for index, track in enumerate(found.tracks):
@@ -281,7 +286,7 @@ def test_hover_tells_parameter_eigenvalue_and_mode(found):
             root = complex(value.replace(" ", "").replace("i", "j"))
             assert root == pytest.approx(found.track(track)[point], abs=1e-5)  # five decimals are shown
         assert all(f"customdata[{i}]" in trace.hovertemplate for i in range(4))
-    assert {"pendulum", "surge–north"} <= {row[0] for trace in figure.data for row in trace.customdata}
+    assert {"pendulum", "surge–north"} <= {row[0] for trace in traces.values() for row in trace.customdata}
 
 
 def test_the_page_needs_no_network(found, tmp_path):

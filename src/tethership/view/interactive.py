@@ -15,7 +15,10 @@ from tethership.analysis.sweep import Sweep
 from tethership.errors import ConfigError
 from tethership.reproduction import LinearFigure, Panel
 from tethership.view import style
-from tethership.view.root_locus import SLOWEST, colour_parameter, display
+from tethership.view.root_locus import PANELS, SLOWEST, colour_parameter, display, own_point
+
+SPACING = 0.2
+"""Room between two panels, for a colour bar and labels [share of the page]."""
 
 HOVER = "<b>%{customdata[0]}</b><br>%{customdata[1]}<br>λ = %{customdata[2]} 1/s<extra>%{customdata[3]}</extra>"
 
@@ -33,7 +36,8 @@ def interactive_root_locus(found: Sweep, title: str = "Root locus", parameter: s
         Which parameter colours the dots; the first if not given.
     """
     name = colour_parameter(found, parameter)
-    return _assembled([Panel(title, found, name, None, None, slow=False)], title)
+    star = own_point(found)
+    return _assembled([Panel(words, found, name, star, None, slow) for words, slow in PANELS], title)
 
 
 def interactive_linear_figure(figure: LinearFigure) -> go.Figure:
@@ -53,9 +57,12 @@ def write_page(figure: go.Figure, path: Path) -> None:
 
 
 def _assembled(panels: list[Panel], title: str) -> go.Figure:
-    drawn = make_subplots(rows=1, cols=len(panels), subplot_titles=[panel.title for panel in panels])
+    count = len(panels)
+    drawn = make_subplots(
+        rows=1, cols=count, subplot_titles=[panel.title for panel in panels], horizontal_spacing=SPACING
+    )
     for column, panel in enumerate(panels, start=1):
-        for trace in _traces(panel, column, len(panels)):
+        for trace in _traces(panel, (1.0 - SPACING * (count - 1)) / count * column + SPACING * (column - 1)):
             drawn.add_trace(trace, row=1, col=column)
         drawn.update_xaxes(title_text="Re λ [1/s]", zeroline=True, zerolinecolor=style.INK, row=1, col=column)
         drawn.update_yaxes(title_text="Im λ [rad/s]", zeroline=True, zerolinecolor=style.INK, row=1, col=column)
@@ -75,7 +82,8 @@ def _slow_limits(panel: Panel) -> tuple[list[float], list[float]]:
     return [1.2 * low - 0.01, 1.2 * high + 0.01], [-1.15 * reach, 1.15 * reach]
 
 
-def _traces(panel: Panel, column: int, columns: int) -> list[go.Scatter]:
+def _traces(panel: Panel, right: float) -> list[go.Scatter]:
+    """Return a panel's tracks and marks; its colour bar stands right of its right edge [share of the page]."""
     found = panel.sweep
     points = np.flatnonzero(found.trimmed)
     label, unit, factor = display(panel.parameter, found.units[panel.parameter])
@@ -91,7 +99,12 @@ def _traces(panel: Panel, column: int, columns: int) -> list[go.Scatter]:
         if index == 0 and len(value) > 1:
             marker |= {
                 "showscale": True,
-                "colorbar": {"title": f"{label} [{unit}]" if unit else label, "x": column / columns - 0.01, "len": 0.9},
+                "colorbar": {
+                    "title": {"text": f"{label} [{unit}]" if unit else label, "side": "right"},
+                    "x": right + 0.01,
+                    "thickness": 14,
+                    "len": 0.9,
+                },
             }
         traces.append(
             go.Scatter(

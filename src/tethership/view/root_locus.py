@@ -19,6 +19,9 @@ from tethership.view import style
 SLOWEST = 0.4
 """Modulus within which a mode counts as slow [1/s]: what the zooms show."""
 
+PANELS = (("all modes", False), ("slow modes", True))
+"""Title of each plot of a sweep, and whether only the slow modes are shown."""
+
 PANEL = (6.2, 5.2)
 """Width and height of one panel [inch]."""
 
@@ -112,14 +115,14 @@ def plot_root_loci(found: Sweep) -> Figure:
     if "wind.speed" in found.values:
         title = f"{config.title}\n{found.scenario.formulation} formulation"
     drawn.suptitle(title, fontsize=style.FONT + 2, color=style.INK)
-    star = _own_point(found)
-    for axes, slow, words in zip(drawn.subplots(1, 2), (False, True), ("all modes", "slow modes"), strict=True):
+    star = own_point(found)
+    for axes, (words, slow) in zip(drawn.subplots(1, 2), PANELS, strict=True):
         plot_root_locus(found, axes, star=star, slow=slow)
         axes.set_title(words, fontsize=style.FONT + 1)
     return drawn
 
 
-def _own_point(found: Sweep) -> int | None:
+def own_point(found: Sweep) -> int | None:
     """Return the point whose parameters are the scenario's own, if there is one."""
     known = list_parameters(found.scenario.config)
     same = np.ones(len(found.outcomes), dtype=bool)
