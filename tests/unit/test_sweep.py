@@ -11,6 +11,7 @@ import pytest
 import tethership as ts
 from tethership.analysis import TrimOutcome
 from tethership.analysis.grid import fill_lines
+from tethership.system import Command, State
 
 WIND = np.linspace(6.0, 12.0, 13)
 ELONGATIONS = (0.8, 0.95, 1.02)
@@ -231,3 +232,21 @@ def test_a_value_in_the_middle_is_checked_too(docking):
 def test_values_that_are_no_list_of_numbers(docking, values):
     with pytest.raises(ts.ConfigError, match=r"wind\.speed"):
         ts.sweep(docking, {"wind.speed": values})
+
+
+def test_every_line_keeps_to_one_branch():
+    """An aerostat in wind has several equilibria: low behind its anchor, or kiting; the sweep must not jump between.
+
+    `trim` finds the low one at 13.75 m/s, the branch of the calm aerostat is the kiting one.
+    """
+    scenario = ts.load_scenario("aerostat")
+    found = ts.sweep(scenario, {"wind.speed": np.linspace(4.0, 14.0, 41)})
+    assert all(outcome is ts.TrimOutcome.converged for outcome in found.outcomes)
+    pitch, down = found.states[:, 7], found.states[:, 11]
+    # Steps of a quarter of a m/s: measured at most 0.06 rad and 1.6 m between neighbours; a jump is 0.67 rad and 42 m.
+    assert np.abs(np.diff(pitch)).max() < 0.1
+    assert np.abs(np.diff(down)).max() < 3.0
+    for point in (0, 20, 40):
+        here = found.at(point)
+        model = ts.linearize(here.system, (State.from_vector(found.states[point]), Command(np.zeros(6), np.zeros(4))))
+        np.testing.assert_allclose(model.A, found.matrices[point], rtol=0, atol=1e-8)  # the same program, batched

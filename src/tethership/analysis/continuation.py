@@ -7,7 +7,7 @@ step; those that do not converge, and all where states are looked for (several e
 shorter ones. The batch is the last axis.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -29,6 +29,9 @@ BATCH = 128
 
 STAGES = (1, 8, 64)
 """Steps of the path from the reference, tried in turn."""
+
+ROUNDS = 40
+"""How often points off the branch of their line are solved again from their neighbours."""
 
 MOST_ITERATIONS = 30
 LARGEST_STEP = 3.0
@@ -157,8 +160,13 @@ def solve_points(
     values: np.ndarray,
     reference: np.ndarray,
     start: np.ndarray,
+    per_line: int,
 ) -> Batch:
     """Return trims and state matrices of many points.
+
+    Where states are looked for, several equilibria may exist: points that do not continue their neighbours are solved
+    again from those, and an equilibrium that is then still of another branch (this one may have ended) is marked by an
+    infinite residual.
 
     Parameters
     ----------
@@ -174,6 +182,8 @@ def solve_points(
         Parameters of the known trim [SI].
     start : ndarray
         Its unknowns.
+    per_line : int
+        Points of each line, neighbours close to each other.
     """
     fixed = tuple(tuple(group) for group in places)
 
@@ -198,8 +208,78 @@ def solve_points(
         if not len(missing):
             break
         better = along(count, values[missing])
-        for old, new in zip(result, better, strict=True):
-            old[missing] = new
+        _replace(result, missing, better)
+    if searched_states:
+        nearest = np.abs((values - reference) / np.maximum(np.ptp(values, axis=0), 1e-12)).sum(axis=1)
+        _keep_to_branch(at, result, values, nearest, per_line, np.asarray(question.unknowns.effort) == 0.0)
+    return result
+
+
+def _replace(batch: Batch, places: np.ndarray, better: Batch) -> None:
+    """Put points into a batch, in place."""
+    for old, new in zip(batch, better, strict=True):
+        old[places] = new
+
+
+def _keep_to_branch(
+    at: Callable[[np.ndarray, np.ndarray], Batch],
+    batch: Batch,
+    values: np.ndarray,
+    nearest: np.ndarray,
+    per_line: int,
+    states: np.ndarray,
+) -> None:
+    """Solve points again that are not on the branch of their line, in place; mark those that stay off it.
+
+    Parameters
+    ----------
+    at : callable
+        Trims of points from starts.
+    batch : Batch
+        All points.
+    values : ndarray
+        Their parameters.
+    nearest : ndarray
+        Distance of each from the reference; each line's branch is that of its nearest point.
+    per_line : int
+        Points of each line.
+    states : ndarray of bool
+        Which unknowns are states.
+    """
+    lines = [np.arange(first, first + per_line) for first in range(0, len(values), per_line)]
+    off = np.zeros(0, dtype=int)
+    for _ in range(ROUNDS):
+        good = in_equilibrium(batch)
+        neighbours = np.concatenate([_branch(batch.unknowns[:, states], good, nearest, line) for line in lines])
+        off = np.flatnonzero(neighbours != np.arange(len(values)))
+        if not len(off) or np.all(neighbours[off] < 0):
+            break
+        chosen = off[neighbours[off] >= 0]
+        _replace(batch, chosen, at(values[chosen], batch.unknowns[neighbours[chosen]]))
+    batch.residual[off[in_equilibrium(batch)[off]]] = np.inf
+
+
+def _branch(unknowns: np.ndarray, good: np.ndarray, nearest: np.ndarray, line: np.ndarray) -> np.ndarray:
+    """Return for each point of a line itself if it is on the branch, else the last one that is; −1 where none is.
+
+    Notes
+    -----
+    Walking away from the point nearest to the reference, a step of the states may be one unit (0.1 rad, 1 m) and three
+    times the last one; up to three points that are off are passed over.
+    """
+    result = np.full(len(line), -1)
+    if not good[line].any():
+        return result
+    seed = int(np.argmin(np.where(good[line], nearest[line], np.inf)))
+    result[seed] = line[seed]
+    for path in (range(seed + 1, len(line)), range(seed - 1, -1, -1)):
+        last, moved = seed, 0.0
+        for here in path:
+            gap = abs(here - last)
+            step = np.abs(unknowns[line[here]] - unknowns[line[last]]).max() / gap
+            if good[line[here]] and gap <= 4 and step <= 1.0 + 3.0 * moved:
+                last, moved = here, step
+            result[here] = line[last]
     return result
 
 

@@ -166,7 +166,8 @@ def sweep(scenario: Scenario, *axes: Axis) -> Sweep:
     Notes
     -----
     Trims start from the scenario's own (or that of an end of the sweep) and are continued along the parameters, all
-    points in one compiled batch. Lines are filled with points in between until eigenvectors of neighbours are alike,
+    points in one compiled batch; where several equilibria exist, every line keeps to one branch, and points at which it
+    has ended are `no_equilibrium`. Lines are filled with points in between until eigenvectors of neighbours are alike,
     so that modes are followed through crossings and coalescence; events are placed between those points.
 
     Raises
@@ -179,7 +180,9 @@ def sweep(scenario: Scenario, *axes: Axis) -> Sweep:
     fine, per_line = fill_lines(grid, shape[-1], fill)
     question = ask(scenario)
     reference, start = _reference(scenario, parameters, grid, question)
-    batch = solve_points(scenario.config.as_arrays(), [p.places for p in parameters], question, fine, reference, start)
+    batch = solve_points(
+        scenario.config.as_arrays(), [p.places for p in parameters], question, fine, reference, start, per_line
+    )
     path = _path(batch)
     orders, lines = _followed(path, per_line, shape[:-1])
     ordered = np.take_along_axis(path.values, orders, axis=1)
