@@ -130,7 +130,6 @@ def summary(found: "Sweep") -> dict[str, Any]:
     events = [
         {
             "kind": event.kind,
-            "event": event.kind,
             "value": event.at[first],
             "at": event.at,
             "modes": list(event.tracks),
