@@ -237,3 +237,22 @@ def test_a_model_too_singular_to_divide_by_is_refused(trimmed):
     upright = State(point.state.velocity, point.state.rates, jnp.array([0.0, np.pi / 2, 0.0]), point.state.position)
     with pytest.raises(ts.ConfigError, match=r"at a pitch of 90° Euler angles are singular"):
         linearize(scenario, (upright, point.command))
+
+
+def test_what_is_no_scenario_and_no_point_is_told():
+    """A name for a scenario, nothing for a point, and a trim that failed: each says what to give."""
+    scenario = ts.load_scenario("side_cables", {"wind.from_direction": 1.0})
+    point = ts.trim(scenario)
+    assert point.outcome is ts.TrimOutcome.no_equilibrium
+    with pytest.raises(
+        ts.ConfigError, match=r"the trim found no equilibrium: [\d.e+-]+ N and [\d.e+-]+ N m are left over"
+    ):
+        linearize(scenario, point)
+    with pytest.raises(ts.ConfigError, match=r"a point is needed, not None; give what trim\(\) returns"):
+        linearize(scenario, None)
+    with pytest.raises(
+        ts.ConfigError, match=r"a scenario is needed, not 'docking'; give what load_scenario\(\) returns"
+    ):
+        linearize("docking", point)
+    with pytest.raises(ts.ConfigError, match=r"sweep: a scenario is needed, not 'docking'"):
+        ts.sweep("docking", {"wind.speed": [6.0]})

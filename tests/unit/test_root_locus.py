@@ -160,6 +160,13 @@ def test_a_passage_of_the_axis_at_a_point_is_found():
     assert [(kind, place) for kind, _, place in happenings(values)] == [("unstable", pytest.approx(0.5, abs=1e-9))]
 
 
+def test_a_sign_of_rounding_is_no_passage():
+    # undamped in still air: Re λ = −6e-33 at the first point, then damped; seen in an aerostat swept from no wind
+    values = np.stack([np.full(41, -4.0), -POINTS + 0j, np.full(41, -3.0)], axis=1).astype(complex)
+    values[0, 1] = 6e-33
+    assert happenings(values) == []
+
+
 def test_a_coalescence_at_a_point_is_placed_there():
     root = np.sqrt((0.5 - POINTS).astype(complex))
     root[20] = 0.0

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tethership.analysis.spectrum import Complex, Real
+from tethership.analysis.spectrum import NULL, Complex, Real
 from tethership.analysis.tracking import pairs_of, partners_of
 
 
@@ -103,8 +103,10 @@ def _crossings(step: _Step) -> Iterator[Event]:
 
 def _axis(step: _Step) -> Iterator[Event]:
     """Yield passages of the imaginary axis; of a pair only the upper member's."""
+    rounding = NULL * np.abs(step.values).max(axis=1, initial=0.0)
     for i in range(step.values.shape[1]):
         growth, upper = step.values[:, i].real, step.values[:, i].imag >= 0
+        growth = np.where(np.abs(growth) < rounding, 0.0, growth)  # undamped in still air: a sign of 1e-33 is none
         for before, after in _sign_changes(growth):
             if upper[before : after + 1].all():
                 place, share = _zero(growth, before, after)

@@ -14,6 +14,8 @@ Axis = Mapping[str, Sequence[float] | np.ndarray]
 
 def lay_grid(scenario: Scenario, axes: tuple[Axis, ...]) -> tuple[list[Parameter], np.ndarray, tuple[int, ...]]:
     """Return the parameters, their values at all points (points, parameters) and the shape of the grid."""
+    if not isinstance(scenario, Scenario):
+        raise ConfigError(f"sweep: a scenario is needed, not {scenario!r}; give what load_scenario() returns")
     known = list_parameters(scenario.config)
     parameters: list[Parameter] = []
     columns: list[tuple[int, np.ndarray]] = []

@@ -16,7 +16,7 @@ from tethership.analysis.equilibrium import RESIDUAL_LIMIT
 from tethership.analysis.linear_model import LinearModel
 from tethership.analysis.right_side import WIND_INPUTS, WIND_UNITS, input_vector, loads, right_side
 from tethership.analysis.semi_analytic import semi_analytic
-from tethership.analysis.trim import TrimPoint
+from tethership.analysis.trim import TrimOutcome, TrimPoint
 from tethership.errors import ConfigError, suggestion
 from tethership.scenario import Scenario
 from tethership.spatial import STANDARD_GRAVITY, rotation_matrix
@@ -138,6 +138,16 @@ def linearize(
         The point is not in equilibrium (it says how far off), the route is not known, or the model is too singular to
         divide by (mass matrix, pitch of ±90°).
     """
+    if not isinstance(system, Scenario | TetheredAirship):
+        raise ConfigError(f"linearize: a scenario is needed, not {system!r}; give what load_scenario() returns")
+    if not isinstance(point, TrimPoint) and not (isinstance(point, tuple) and len(point) == 2):
+        raise ConfigError(f"linearize: a point is needed, not {point!r}; give what trim() returns, or (State, Command)")
+    if require_equilibrium and isinstance(point, TrimPoint) and point.outcome is TrimOutcome.no_equilibrium:
+        left = np.abs(np.asarray(point.residual))
+        raise ConfigError(
+            f"linearize: the trim found no equilibrium: {left[:3].max():.3g} N and {left[3:].max():.3g} N m are left "
+            "over; free more quantities (trim.unknowns) or start its search elsewhere (trim.position)"
+        )
     plant = system.system if isinstance(system, Scenario) else system
     state, command = (point.state, point.command) if isinstance(point, TrimPoint) else point
     vector, inputs = state.as_vector(), input_vector(plant, command)

@@ -170,4 +170,6 @@ def _print(found: "Modes", ranked: "Sensitivities | None", title: str) -> None:
             shift = f"{row.shift.real:+.2e} {row.shift.imag:+.2e}i"
             typer.echo(f"  {row.parameter:<48} {row.value:>10.4g} {row.unit:<9} {row.step:>9.2g} {shift:>24}")
     missing = sum(row.derivative is None for row in ranked.rows)
-    typer.echo(f"  {len(ranked.rows)} parameters; --json has all. {missing} have no trim beside this one.")
+    typer.echo(
+        f"  {len(ranked.rows)} parameters; --json has all. {missing} have no derivative: their change has no trim."
+    )

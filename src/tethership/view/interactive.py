@@ -110,11 +110,10 @@ def _traces(panel: Panel, right: float) -> list[go.Scatter]:
             go.Scatter(
                 x=roots.real,
                 y=roots.imag,
-                mode="lines+markers",
+                mode="markers",
                 marker=marker,
                 customdata=data,
                 hovertemplate=HOVER,
-                line={"color": style.GUIDE, "width": 1},
                 name=track,
             )
         )

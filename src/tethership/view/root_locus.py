@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from tethership.analysis.modes import Modes
 from tethership.analysis.spectrum import Complex
 from tethership.analysis.sweep import Sweep
+from tethership.analysis.tracking import partners_of
 from tethership.errors import ConfigError
 from tethership.reproduction import LinearFigure, Panel
 from tethership.scenario import list_parameters
@@ -87,11 +88,13 @@ def plot_root_locus(
     kept = [track for track in found.tracks if not slow or np.any(np.abs(found.track(track)[good]) < SLOWEST)]
     _frame(axes, found, kept, free, slow)
     lines = np.arange(len(value)).reshape(-1, found.shape[-1])
+    partners = partners_of(found.eigenvalues)
     for track in kept:
-        roots = found.track(track)
+        roots, index = found.track(track), found.tracks.index(track)
         for line in lines:
             inside = line[good[line]]
-            axes.plot(roots[inside].real, roots[inside].imag, color=style.BETWEEN, linewidth=0.6, zorder=1)
+            for part in _unbroken(roots[inside], partners[inside, index]):
+                axes.plot(part.real, part.imag, color=style.BETWEEN, linewidth=0.6, zorder=1)
             _arrow(axes, roots[inside])
         shade = style.INK if len(value) == 1 else colours.to_rgba(value[good])
         axes.scatter(roots[good].real, roots[good].imag, c=shade, s=16, zorder=2)
@@ -171,6 +174,11 @@ def _frame(axes: Axes, found: Sweep, kept: list[str], free: Modes | None, slow: 
     axes.set_xlabel("Re λ [1/s]", fontsize=style.FONT)
     axes.set_ylabel("Im λ [rad/s]", fontsize=style.FONT)
     axes.tick_params(labelsize=style.SMALL)
+
+
+def _unbroken(roots: Complex, partner: np.ndarray) -> list[Complex]:
+    """Return a track in parts without the steps in which its conjugate becomes another one: its way is not straight."""
+    return np.split(roots, np.flatnonzero(np.diff(partner)) + 1)
 
 
 def _arrow(axes: Axes, roots: Complex) -> None:
