@@ -309,3 +309,33 @@ ONCE_PASSED = {
 def test_wrong_input_that_once_passed(words, run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     refused(run, words, ONCE_PASSED[words])
+
+
+def test_ctrl_c_is_told(run, monkeypatch):
+    """Interrupted: exit code 3 and one line, as the README says."""
+
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tethership.cli.modes.chosen_scenario", interrupted)
+    code, out, err = run("modes")
+    assert (code, out) == (3, "")
+    assert "interrupted" in err
+
+
+def test_angles_of_a_sweep_are_degrees(run, tmp_path):
+    code, out, _ = run("sweep", "--over", "wind.from_direction=[0]", "--json", "--out", tmp_path)
+    result = json.loads(out)
+    assert code == 0
+    assert result["units"] == {"wind.from_direction": "deg"}
+
+
+def test_still_air_is_undamped_not_unstable(run):
+    """Re λ = 2e-16 is rounding: such a mode neither doubles nor is it stable."""
+    code, out, _ = run("modes", "--wind", 0, "--json")
+    modes = {mode["name"]: mode for mode in json.loads(out)["modes"]}
+    assert code == 0
+    for name in ("roll oscillation", "pendulum"):
+        assert modes[name]["half_or_double_time"] is None
+        assert modes[name]["stable"] is False
+    assert "doubles" not in run("modes", "--wind", 0)[1]

@@ -214,3 +214,9 @@ def test_bounds_of_the_file_hold(docking, values, message):
 def test_unknown_names_offer_the_nearest(docking, asked, message):
     with pytest.raises(ts.ConfigError, match=message):
         ts.scenario_at(docking, {asked: 1.0})
+
+
+def test_tables_left_to_their_defaults_can_be_changed():
+    """`hover` says nothing of its air: its numbers are parameters all the same."""
+    warmer = ts.scenario_at(ts.load_scenario("hover"), {"atmosphere.temperature_offset": 5.0})
+    assert warmer.config.atmosphere.temperature_offset == 5.0

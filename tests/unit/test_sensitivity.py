@@ -203,3 +203,27 @@ def test_command(docking, pendulum, monkeypatch, capsys):
         assert (shown["unit"], shown["value"], shown["step"]) == (row.unit, row.value, row.step)
         for key, value in (("derivative", row.derivative), ("shift", row.shift)):
             assert shown[key] == (None if value is None else [value.real, value.imag])
+
+
+def test_no_derivative_at_a_corner():
+    """A symmetric aerostat with its tether point moved sideways: λ goes as |h|, so there is no derivative.
+
+    |v| of the fins' cross-flow has a corner at zero. Automatic differentiation would give one side's slope.
+    """
+    scenario = ts.load_scenario("aerostat", {"wind.speed": 9.0})
+    table = ts.sensitivities(scenario, "side-slip")
+    found = rows(table)
+    for name in ("cables.nose.tether_point.1", "vehicle.buoyancy.centre.1"):
+        assert (found[name].derivative, found[name].shift, found[name].reason) == (None, None, "corner")
+
+    def eigenvalue(aside):
+        here = ts.scenario_at(scenario, {"cables.nose.tether_point.1": aside})
+        values = ts.linearize(here, ts.trim(here)).modes().eigenvalues
+        return values[np.argmin(np.abs(values - table.eigenvalue))]
+
+    here, port, starboard = (eigenvalue(aside) for aside in (0.0, -1e-3, 1e-3))
+    assert port == pytest.approx(starboard, abs=1e-9)  # mirror images
+    assert abs(port - here) > 3e-6  # measured 9.5e-6 for 1 mm: of first order
+    # What is smooth keeps its derivative, and the docking's side force is told from a corner.
+    assert found["vehicle.body.mass"].reason == ""
+    assert found["vehicle.body.mass"].derivative is not None

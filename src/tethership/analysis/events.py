@@ -73,6 +73,8 @@ class _Step(NamedTuple):
         first, last = self.values[before, list(tracks)].mean(), self.values[before + 1, list(tracks)].mean()
         position = self.points[before] + share * (self.points[before + 1] - self.points[before])
         value = complex((1.0 - share) * first + share * last)
+        if kind in ("split", "coalesce"):
+            value = complex(value.real)  # two that meet do so on the real axis
         return Event(kind, tuple(self.tracks[i] for i in tracks), float(position), value)
 
 

@@ -1,5 +1,6 @@
 """The points of a sweep: parameters moved along axes, checked, and lines filled up. Depends on: scenario, errors."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -10,6 +11,10 @@ from tethership.scenario.parameters import Parameter, check_values, find_paramet
 
 Axis = Mapping[str, Sequence[float] | np.ndarray]
 """Parameters moved together along one axis: name → values [SI]."""
+
+
+MOST_POINTS = 100_000
+"""Points of one sweep: its results stay in memory."""
 
 
 def lay_grid(scenario: Scenario, axes: tuple[Axis, ...]) -> tuple[list[Parameter], np.ndarray, tuple[int, ...]]:
@@ -33,6 +38,8 @@ def lay_grid(scenario: Scenario, axes: tuple[Axis, ...]) -> tuple[list[Parameter
             _check_alone(parameter, parameters)
             parameters.append(parameter)
             columns.append((index, values))
+    if math.prod(shape) > MOST_POINTS:
+        raise ConfigError(f"sweep: {math.prod(shape)} points are too many (at most {MOST_POINTS}); sweep in parts")
     mesh = np.meshgrid(*[np.arange(count) for count in shape], indexing="ij")
     grid = np.stack([values[mesh[index].ravel()] for index, values in columns], axis=1)
     extremes = {0, len(grid) - 1, *np.argmin(grid, axis=0).tolist(), *np.argmax(grid, axis=0).tolist()}

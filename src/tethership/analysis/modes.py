@@ -62,8 +62,8 @@ class Mode(NamedTuple):
 
     @property
     def stable(self) -> bool:
-        """Whether its amplitude falls."""
-        return not self.null and self.eigenvalue.real < 0
+        """Whether its amplitude falls; an undamped mode's does not."""
+        return self.half_or_double_time is not None and self.eigenvalue.real < 0
 
     @property
     def oscillates(self) -> bool:

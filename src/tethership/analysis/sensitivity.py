@@ -9,7 +9,9 @@ function theorem on the optimality conditions of the trim, balance(z, p) = 0 wit
 
     [[W + Σμᵢ∇²rᵢ, Jᵀ], [J, 0]] (dz, dμ) = −(∂ₚ(Jᵀμ), ∂ₚr),     J = ∂r/∂z,   Wz + Jᵀμ = 0
 
-A repeated or defective eigenvalue has no derivative: the group's mean has, and is what is given for it.
+A repeated or defective eigenvalue has no derivative: the group's mean has, and is what is given for it. Where A itself
+has a corner (|v| of a cross-flow that is zero, as of a symmetric ship whose tether point moves sideways) there is none
+either: the slopes of A to both sides along the trims are compared, and where they differ none is given.
 """
 
 from collections.abc import Sequence
@@ -22,7 +24,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from tethership.analysis.continuation import place_values
-from tethership.analysis.equilibrium import solve
+from tethership.analysis.equilibrium import Problem, solve
 from tethership.analysis.linearize import linearize
 from tethership.analysis.modes import find_modes
 from tethership.analysis.posing import Question, ask, pose, posed
@@ -42,6 +44,12 @@ COEFFICIENTS = "vehicle.hull.coefficients."
 
 WITHOUT_EFFECT = (".breaking_force", ".rewind_rate", ".fastest_rate")
 
+SIDE = 1e-4
+"""How far to the sides the slopes are looked at, of an ordinary step: curvature is not felt, rounding neither."""
+
+CORNER = 0.02
+"""Relative difference of the slopes to both sides beyond which there is a corner."""
+
 CLUSTER = 1e-7
 """Eigenvalues that an error of A of this relative size would let coalesce are taken as one group."""
 
@@ -58,11 +66,13 @@ class Sensitivity(NamedTuple):
     value : float
         Its value [SI].
     derivative : complex or None
-        dλ/dp [1/s per unit]; None where the point beside this one cannot be trimmed.
+        dλ/dp [1/s per unit]; None where there is none, see `reason`.
     step : float
         A change of ordinary size: 1 % of the value; of a value of zero or an angle, see `ordinary_step`.
     shift : complex or None
         derivative · step [1/s]; rows are ranked by its modulus.
+    reason : str
+        Why there is no derivative: `no trim` beside this point, or `corner`, where the slopes to both sides differ.
     """
 
     parameter: str
@@ -71,6 +81,7 @@ class Sensitivity(NamedTuple):
     derivative: complex | None
     step: float
     shift: complex | None
+    reason: str = ""
 
 
 class Sensitivities(NamedTuple):
@@ -122,6 +133,11 @@ def sensitivities(scenario: Scenario, mode: str, point: TrimPoint | None = None)
         The scenario has no trim.
     ConfigError
         There is no such mode.
+
+    Notes
+    -----
+    Of a Gertler hull's coefficients the last moves against each of the others, so that the tail stays closed: to try
+    such a row, change both. Components along a unit vector have no row.
     """
     return rank_sensitivities(scenario, [mode], point)[0]
 
@@ -138,14 +154,18 @@ def rank_sensitivities(
     spectrum = analyse(model.comparable_matrix(), CLUSTER)
     chosen = [named.find(name) for name in modes]
     parameters = _relevant(scenario.config)
-    slopes, exists = matrix_slopes(scenario, list(parameters.values()))
+    length = scenario.config.vehicle.hull.length
+    steps = np.array([ordinary_step(parameter, length) for parameter in parameters.values()])
+    slopes, exists, sided = matrix_slopes(scenario, list(parameters.values()), steps)
     to_comparable, back = model.comparable, np.linalg.inv(model.comparable)
     tables = []
     for one in chosen:
         group, projector = _group(spectrum, one.eigenvalue)
         projector = back @ projector @ to_comparable
-        derivative = np.einsum("ij,kji->k", projector, slopes) / len(group)
-        rows = [*_rows(scenario, parameters, derivative, exists)]
+        derivative, before, after = (np.einsum("ij,kji->k", projector, a) / len(group) for a in (slopes, *sided))
+        smooth = np.abs(after - before) * steps <= CORNER * (np.abs(derivative) * steps) + 1e-8
+        reasons = np.where(exists, np.where(smooth, "", "corner"), "no trim")
+        rows = _rows(parameters, derivative, steps, reasons)
         rows.sort(key=lambda row: (row.shift is None, -abs(row.shift or 0.0), row.parameter))
         mean = complex(spectrum.eigenvalues[list(group)].mean())
         tables.append(Sensitivities(one.name, mean, len(group), tuple(rows)))
@@ -188,17 +208,14 @@ def _group(spectrum: Spectrum, eigenvalue: complex) -> tuple[tuple[int, ...], np
 
 
 def _rows(
-    scenario: Scenario, parameters: dict[str, Parameter], derivative: np.ndarray, exists: np.ndarray
+    parameters: dict[str, Parameter], derivative: np.ndarray, steps: np.ndarray, reasons: np.ndarray
 ) -> list[Sensitivity]:
     """Return the rows of the table."""
-    length = scenario.config.vehicle.hull.length
     rows = []
-    for (name, parameter), slope, there in zip(parameters.items(), derivative, exists, strict=True):
-        step = ordinary_step(parameter, length)
-        given = complex(slope) if there else None
-        rows.append(
-            Sensitivity(name, parameter.unit, parameter.value, given, step, None if given is None else given * step)
-        )
+    for (name, parameter), slope, step, reason in zip(parameters.items(), derivative, steps, reasons, strict=True):
+        given = None if reason else complex(slope)
+        shift = None if given is None else given * float(step)
+        rows.append(Sensitivity(name, parameter.unit, parameter.value, given, float(step), shift, str(reason)))
     return rows
 
 
@@ -215,8 +232,10 @@ def ordinary_step(parameter: Parameter, length: float) -> float:
     return 0.01 * (length if parameter.unit == "m" else 1.0)
 
 
-def matrix_slopes(scenario: Scenario, parameters: Sequence[Parameter]) -> tuple[np.ndarray, np.ndarray]:
-    """Return dA/dp along the trims, shape (parameters, 12, 12), and whether a trim beside this one exists.
+def matrix_slopes(
+    scenario: Scenario, parameters: Sequence[Parameter], steps: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray]]:
+    """Return dA/dp along the trims, whether a trim beside this one exists, and the slopes of A to both sides.
 
     Parameters
     ----------
@@ -224,6 +243,12 @@ def matrix_slopes(scenario: Scenario, parameters: Sequence[Parameter]) -> tuple[
         With a trim.
     parameters : sequence of Parameter
         With respect to which; one that stands for several numbers moves all of them alike.
+    steps : ndarray
+        An ordinary change of each [SI]; the sides are looked at `SIDE` of it away.
+
+    Notes
+    -----
+    Slopes have the shape (parameters, 12, 12).
     """
     config = scenario.config.as_arrays()
     question = ask(scenario)
@@ -231,11 +256,60 @@ def matrix_slopes(scenario: Scenario, parameters: Sequence[Parameter]) -> tuple[
     places = sorted({place for parameter in parameters for place in parameter.places})
     leaves = jax.tree_util.tree_leaves(config)
     current = jnp.stack([jnp.asarray(leaves[place]) for place in places])
-    slopes, left, size = _retrimmed(config, tuple((place,) for place in places), question, current, values)
+    fixed = tuple((place,) for place in places)
+    slopes, left, size, moved = _retrimmed(config, fixed, question, current, values)
     combine = np.array([[_share(parameter, place) for place in places] for parameter in parameters])
     missing = np.abs(np.einsum("kp,rp->kr", combine, left)).max(axis=1)
     scale = np.maximum(np.abs(np.einsum("kp,rp->kr", combine, size)).max(axis=1), 1e-9)
-    return np.einsum("kp,ijp->kij", combine, slopes), missing < 1e-6 * scale
+    sided = _one_sided(config, fixed, question, current, values, combine, combine @ moved.T, SIDE * steps)
+    return np.einsum("kp,ijp->kij", combine, slopes), missing < 1e-6 * scale, sided
+
+
+def _one_sided(
+    config: ScenarioConfig,
+    places: tuple[tuple[int, ...], ...],
+    question: Question,
+    current: Float[Array, "leaves"],
+    values: Float[Array, "unknowns"],
+    directions: np.ndarray,
+    moved: np.ndarray,
+    steps: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the slopes of A before and after the point along each direction of the numbers, the trim moving along."""
+    sign = np.concatenate([[0.0], -np.ones(len(steps)), np.ones(len(steps))])
+    reach = np.concatenate([[0.0], steps, steps]) * sign
+    numbers = np.asarray(current) + reach[:, None] * np.vstack([directions[:1], directions, directions])
+    unknowns = np.asarray(values) + reach[:, None] * np.vstack([moved[:1], moved, moved])
+    found = np.asarray(_matrices(config, places, question, jnp.asarray(numbers), jnp.asarray(unknowns)))
+    here, before, after = found[0], found[1 : len(steps) + 1], found[len(steps) + 1 :]
+    return (here - before) / steps[:, None, None], (after - here) / steps[:, None, None]
+
+
+@eqx.filter_jit
+def _matrices(
+    config: ScenarioConfig,
+    places: tuple[tuple[int, ...], ...],
+    question: Question,
+    numbers: Float[Array, "points leaves"],
+    values: Float[Array, "points unknowns"],
+) -> Float[Array, "points 12 12"]:
+    """Return A at many numbers and unknowns."""
+    return jax.vmap(lambda own, unknowns: _matrix(config, places, question, own, unknowns)[0])(numbers, values)
+
+
+def _matrix(
+    config: ScenarioConfig,
+    places: tuple[tuple[int, ...], ...],
+    question: Question,
+    numbers: Float[Array, "leaves"],
+    unknowns: Float[Array, "unknowns"],
+) -> tuple[Float[Array, "12 12"], Problem]:
+    """Return A at numbers of the scenario and unknowns of its trim, and the trim's problem there."""
+    here = place_values(config, places, numbers)
+    problem = pose(here, build_system(here), question)
+    state, command = problem.unpack(unknowns)
+    inputs = input_vector(problem.plant, command)
+    return jax.jacfwd(lambda s: right_side(problem.plant, s, inputs))(state.as_vector()), problem
 
 
 def _share(parameter: Parameter, place: int) -> float:
@@ -251,10 +325,11 @@ def _retrimmed(
     question: Question,
     current: Float[Array, "leaves"],
     values: Float[Array, "unknowns"],
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return dA/dp (12, 12, leaves) along the trims.
 
-    Then what is left of the balance's derivative after retrimming (6, leaves), and that derivative itself.
+    Then what is left of the balance's derivative after retrimming (6, leaves), that derivative itself, and the slopes
+    of the unknowns (unknowns, leaves).
     """
     count = len(places)
     effort = np.diag(np.asarray(question.unknowns.effort))
@@ -267,7 +342,7 @@ def _retrimmed(
     right = np.vstack([stationary[:, :count], balance[:, :count]])
     moved = -(np.linalg.pinv(system, rcond=1e-10) @ right)[: len(slope.T)]
     total = matrix[..., :count] + matrix[..., count:] @ moved
-    return total, balance[:, :count] + slope @ moved, balance[:, :count]
+    return total, balance[:, :count] + slope @ moved, balance[:, :count], moved
 
 
 @eqx.filter_jit
@@ -283,18 +358,14 @@ def _slopes(
     count = len(places)
 
     def everything(together: Float[Array, "n"]) -> tuple[Array, Array, Array]:
-        here = place_values(config, places, together[:count])
-        problem = pose(here, build_system(here), question)
+        numbers, unknowns = together[:count], together[count:]
+        matrix, problem = _matrix(config, places, question, numbers, unknowns)
         plant = problem.plant
 
         def balance(unknowns: Array) -> Array:
             unit = 1e-3 * plant.ship.gravity.mass * STANDARD_GRAVITY
             return problem.residual(*problem.unpack(unknowns)) / unit
 
-        unknowns = together[count:]
-        state, command = problem.unpack(unknowns)
-        inputs = input_vector(plant, command)
-        matrix = jax.jacfwd(lambda s: right_side(plant, s, inputs))(state.as_vector())
         return matrix, balance(unknowns), multiplier @ jax.jacfwd(balance)(unknowns)
 
     return jax.jacfwd(everything)(jnp.concatenate([current, values]))

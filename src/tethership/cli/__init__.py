@@ -10,6 +10,9 @@ from tethership.cli import dock, files, modes, sweep, tension, trim
 from tethership.cli.common import NO_ANSWER, WRONG_INPUT
 from tethership.errors import ConfigError, SolveError
 
+INTERRUPTED = 130
+"""What typer returns after Ctrl-C."""
+
 app = typer.Typer(
     name="tethership",
     help="Flight dynamics, control and certification of tethered airships.",
@@ -65,4 +68,6 @@ def main() -> None:
             raise
         _fail(f"{spoken()} (tethership --help shows what is allowed)", WRONG_INPUT)
     else:
+        if code == INTERRUPTED:
+            _fail("interrupted; what was not written yet is lost", NO_ANSWER)
         sys.exit(code if isinstance(code, int) else 0)

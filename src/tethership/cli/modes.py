@@ -69,7 +69,8 @@ def modes(
 
         with stage("sensitivities"):
             ranked = sensitivities(loaded, sensitivity, point)
-    head = {"outcome": point.outcome.name, "wind": loaded.config.wind.speed, "formulation": loaded.formulation}
+    head = {"outcome": point.outcome.name, "message": point.outcome.value, "saturated": list(point.saturated)}
+    head |= {"wind": loaded.config.wind.speed, "formulation": loaded.formulation}
     result = head | summary(model, found) | ({} if ranked is None else {"sensitivity": _ranked(ranked)})
     if folder is not None:
         (folder / "modes.json").write_text(json_text(result), encoding="utf-8")
@@ -143,6 +144,7 @@ def _ranked(table: "Sensitivities") -> dict[str, Any]:
                 "derivative": None if row.derivative is None else pair(row.derivative),
                 "step": row.step,
                 "shift": None if row.shift is None else pair(row.shift),
+                "reason": row.reason,
             }
             for row in table.rows
         ],
@@ -154,9 +156,11 @@ def _print(found: "Modes", ranked: "Sensitivities | None", title: str) -> None:
     typer.echo(title)
     typer.echo(f"  {'mode':<22} {'λ [1/s]':>22} {'ω [rad/s]':>10} {'ζ':>7} {'half/double [s]':>16}")
     for mode in found.modes:
-        value = f"{mode.eigenvalue.real:.5f}" + (f" ± {mode.eigenvalue.imag:.5f}i" if mode.oscillates else "")
+        value = f"{0.0 if mode.null else mode.eigenvalue.real:.5f}" + (
+            f" ± {mode.eigenvalue.imag:.5f}i" if mode.oscillates else ""
+        )
         time = "–" if mode.half_or_double_time is None else f"{mode.half_or_double_time:.1f}"
-        growing = "" if mode.null or mode.stable else "  doubles"
+        growing = "" if mode.half_or_double_time is None or mode.stable else "  doubles"
         note = "  null" if mode.null else growing
         if mode.multiplicity > 1:
             note += f", {mode.multiplicity} coincide" + (", defective" if mode.defective else "")
@@ -171,5 +175,5 @@ def _print(found: "Modes", ranked: "Sensitivities | None", title: str) -> None:
             typer.echo(f"  {row.parameter:<48} {row.value:>10.4g} {row.unit:<9} {row.step:>9.2g} {shift:>24}")
     missing = sum(row.derivative is None for row in ranked.rows)
     typer.echo(
-        f"  {len(ranked.rows)} parameters; --json has all. {missing} have no derivative: their change has no trim."
+        f"  {len(ranked.rows)} parameters; --json has all. {missing} have no derivative (no trim beside, or a corner)."
     )

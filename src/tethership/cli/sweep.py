@@ -71,6 +71,7 @@ def sweep(
     else:
         _print(result, found)
     if not any(one.trimmed.any() for one in found):
+        typer.echo(f"tethership: no point could be trimmed. {found[0].outcomes[0].value}", err=True)
         raise typer.Exit(NO_ANSWER)
 
 
@@ -125,22 +126,23 @@ def _figures(
 
 
 def summary(found: "Sweep") -> dict[str, Any]:
-    """Return the keys that scripts may rely on, SI."""
+    """Return the keys that scripts may rely on, SI; angles among the parameters in degrees."""
     first = next(iter(found.values))
+    factors = {name: 180.0 / math.pi if unit == "rad" else 1.0 for name, unit in found.units.items()}
     events = [
         {
             "kind": event.kind,
-            "value": event.at[first],
-            "at": event.at,
+            "value": event.at[first] * factors[first],
+            "at": {name: value * factors[name] for name, value in event.at.items()},
             "modes": list(event.tracks),
             "eigenvalue": pair(event.eigenvalue),
         }
         for event in found.events
     ]
     return {
-        "parameter": found.values[first],
-        "parameters": found.values,
-        "units": found.units,
+        "parameter": found.values[first] * factors[first],
+        "parameters": {name: values * factors[name] for name, values in found.values.items()},
+        "units": {name: "deg" if unit == "rad" else unit for name, unit in found.units.items()},
         "shape": list(found.shape),
         "tracks": {name: [_root(value) for value in found.track(name)] for name in found.tracks},
         "names": {
@@ -236,10 +238,14 @@ def _print(result: dict[str, Any], found: list["Sweep"]) -> None:
         first, last = ({name: float(v[i]) for name, v in one.values.items()} for i in (0, -1))
         words = ", ".join(f"{name} {first[name]:.4g} to {last[name]:.4g} {one.units[name]}" for name in one.values)
         typer.echo(f"{words}: {int(one.trimmed.sum())} of {len(one.outcomes)} points in trim")
-        for outcome, value, throttle in zip(one.outcomes, next(iter(one.values.values())), one.throttle, strict=True):
+        rows = zip(one.outcomes, next(iter(one.values.values())), one.throttle, one.residual, strict=True)
+        for outcome, value, throttle, residual in rows:
             if outcome.name != "converged":
                 most = np.abs(throttle).max(initial=0.0)
-                typer.echo(f"  {value:<10.4g} {outcome.name}: largest |throttle| {most:.2f} of nominal")
+                lacks = f"largest |throttle| {most:.2f} of nominal"
+                if outcome.name == "no_equilibrium":
+                    lacks = f"{np.abs(residual).max():.3g} N or N m left over"
+                typer.echo(f"  {value:<10.4g} {outcome.name}: {lacks}")
         for event in one.events:
             place = ", ".join(f"{name} = {value:.4g}" for name, value in event.at.items())
             verb = {"unstable": "becomes unstable", "stable": "becomes stable"}.get(event.kind, event.kind)

@@ -200,6 +200,10 @@ def _document_at(scenario: Scenario, parameters: Sequence[Parameter], values: Se
     config = with_values(scenario.config, parameters, [float(value) for value in values])
     document = copy.deepcopy(scenario.document)
     for leaf in (leaf for parameter in parameters for leaf in parameter.leaves):
+        table = leaf.key.split(".")[0]
+        kind = getattr(getattr(config, table), "model", None)
+        if kind is not None and table not in document:
+            document[table] = {"model": kind}  # a table left to its defaults: its kind must be said with its numbers
         change(document, leaf.key, _listed(_value_at(config, leaf.key)), scenario.name)
     return document
 

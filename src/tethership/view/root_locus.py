@@ -184,7 +184,9 @@ def _unbroken(roots: Complex, partner: np.ndarray) -> list[Complex]:
 def _arrow(axes: Axes, roots: Complex) -> None:
     """Draw an arrow at the end of a track, in its last direction."""
     moved = np.flatnonzero(np.abs(roots - roots[-1]) > 1e-6) if len(roots) > 1 else np.array([], int)
-    if len(moved):
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    inside = len(roots) > 0 and left <= roots[-1].real <= right and low <= roots[-1].imag <= high
+    if len(moved) and inside:
         start, end = roots[moved[-1]], roots[-1]
         axes.annotate(
             "",
