@@ -160,6 +160,11 @@ def test_a_passage_of_the_axis_at_a_point_is_found():
     assert [(kind, place) for kind, _, place in happenings(values)] == [("unstable", pytest.approx(0.5, abs=1e-9))]
 
 
+def test_what_passes_zero_does_not_cross_the_null_modes():
+    values = np.stack([np.zeros(41), POINTS - 0.505, np.zeros(41)], axis=1).astype(complex)
+    assert [kind for kind, _, _ in happenings(values)] == ["unstable"]
+
+
 def test_a_sign_of_rounding_is_no_passage():
     # undamped in still air: Re λ = −6e-33 at the first point, then damped; seen in an aerostat swept from no wind
     values = np.stack([np.full(41, -4.0), -POINTS + 0j, np.full(41, -3.0)], axis=1).astype(complex)

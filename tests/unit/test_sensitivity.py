@@ -227,3 +227,10 @@ def test_no_derivative_at_a_corner():
     # What is smooth keeps its derivative, and the docking's side force is told from a corner.
     assert found["vehicle.body.mass"].reason == ""
     assert found["vehicle.body.mass"].derivative is not None
+
+
+def test_a_point_of_another_trim_is_refused(docking):
+    """A trim's derivative depends on what it looks for: with other unknowns it is another question."""
+    other = ts.trim(docking, unknowns=["throttle", "theta"], fixed={"theta": 0.02})
+    with pytest.raises(ts.ConfigError, match="no answer to the scenario's own trim table"):
+        ts.sensitivities(docking, "pendulum", other)

@@ -56,12 +56,7 @@ def test_aerostat_on_a_taut_line_is_an_inverted_pendulum(form):
     # Down: an axial spring. elastic_catenary EA/L; `published` in its joint has (K0(e_e−e_c)/(e_e−e_c))/L = K0/L too.
     axial = np.sqrt(69_760.0 / 30.0 / (100.0 + K2 * displaced))
     np.testing.assert_allclose(found, [axial, along, across], rtol=1e-6)
-
-
-def test_apparent_mass_is_what_makes_the_period():
-    """Without it the period would be 28 % shorter across the hull: the test above can fail."""
-    displaced = RHO * VOLUME
-    assert np.sqrt((100.0 + K2 * displaced) / 100.0) > 1.28
+    assert found[2] < 0.8 * np.sqrt(lift / height / 100.0)  # without apparent mass it would swing so fast
 
 
 @pytest.mark.parametrize("form", BOTH)

@@ -22,6 +22,7 @@ from tethership.analysis.posing import Question, pose
 from tethership.analysis.right_side import input_vector, right_side
 from tethership.scenario import ScenarioConfig
 from tethership.scenario.build import build_system
+from tethership.scenario.parameters import with_values
 from tethership.spatial import STANDARD_GRAVITY
 
 BATCH = 128
@@ -85,16 +86,12 @@ def _newton(problem: Problem, start: Float[Array, "unknowns"]) -> Float[Array, "
     Gauss–Newton on the balance and a small weight on the effort (as `equilibrium.solve`): the fixed point has the
     least norm of throttles to 1e-6 and a residual far below that of an equilibrium.
     """
-    unit = 1e-3 * problem.plant.ship.gravity.mass * STANDARD_GRAVITY
     effort = EFFORT**2 * problem.unknowns.effort
     longest = jnp.where(problem.unknowns.effort > 0, jnp.inf, LARGEST_STEP)
 
-    def balance(values: Float[Array, "unknowns"]) -> Float[Array, "6"]:
-        return problem.residual(*problem.unpack(values)) / unit
-
     def step(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
         count, values, _ = carry
-        residual, slope = balance(values), jax.jacfwd(balance)(values)
+        residual, slope = problem.balance(values), jax.jacfwd(problem.balance)(values)
         normal = slope.T @ slope
         ridge = _RIDGE * jnp.trace(normal) + 1e-30
         move = -jnp.linalg.solve(normal + jnp.diag(effort + ridge), slope.T @ residual + effort * values)
@@ -120,7 +117,7 @@ def _solve_batch(
     """Return a batch of trims with their state matrices; `places` are the leaves that each parameter moves."""
 
     def point(value: Float[Array, "parameters"], start: Float[Array, "unknowns"]) -> Batch:
-        here = place_values(config, places, value)
+        here = with_values(config, places, value)
         plant = build_system(here)
         problem = pose(here, plant, question)
         found = _newton(problem, start)
@@ -140,17 +137,6 @@ def _solve_batch(
         )
 
     return jax.vmap(point, in_axes=-1, out_axes=-1)(values, starts)
-
-
-def place_values(
-    config: ScenarioConfig, places: tuple[tuple[int, ...], ...], values: Float[Array, "parameters"]
-) -> ScenarioConfig:
-    """Return a configuration with the leaves that each parameter moves set to its value [SI]; may be traced."""
-    leaves, structure = jax.tree_util.tree_flatten(config)
-    for i, group in enumerate(places):
-        for place in group:
-            leaves[place] = values[i]
-    return jax.tree_util.tree_unflatten(structure, leaves)
 
 
 def solve_points(
@@ -300,11 +286,10 @@ def _in_batches(
     parts = []
     for first in range(0, len(values), BATCH):
         rows = np.minimum(np.arange(first, first + BATCH), len(values) - 1)
-        parts.append(
-            (rows, _solve_batch(config, places, question, jnp.asarray(values[rows].T), jnp.asarray(starts[rows].T)))
-        )
+        where, begin = jnp.asarray(values[rows].T), jnp.asarray(starts[rows].T)
+        parts.append(_solve_batch(config, places, question, where, begin))
     fields = []
     for name in Batch._fields:
-        arrays = [np.moveaxis(np.asarray(getattr(part, name)), -1, 0) for _, part in parts]
+        arrays = [np.moveaxis(np.asarray(getattr(part, name)), -1, 0) for part in parts]
         fields.append(np.concatenate(arrays)[: len(values)])
     return Batch(*fields)

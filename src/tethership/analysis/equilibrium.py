@@ -65,16 +65,16 @@ class Problem(eqx.Module):
         left = plant.ship.body.gyroscopic(state.velocity, state.rates).as_vector()
         return sum((load.as_vector() for load in loads.values()), -left)
 
+    def balance(self, values: Float[Array, "unknowns"]) -> Float[Array, "6"]:
+        """Return the residual for values of the unknowns, in units of 1e-3 of the weight [-]."""
+        unit = 1e-3 * self.plant.ship.gravity.mass * STANDARD_GRAVITY
+        return self.residual(*self.unpack(values)) / unit
+
 
 @eqx.filter_jit
 def _balance(problem: Problem, values: Float[Array, "unknowns"]) -> tuple[Array, Array]:
-    """Return the residual in units of 1e-3 of the weight, and its exact Jacobian."""
-    unit = 1e-3 * problem.plant.ship.gravity.mass * STANDARD_GRAVITY
-
-    def balance(x: Float[Array, "unknowns"]) -> Float[Array, "6"]:
-        return problem.residual(*problem.unpack(x)) / unit
-
-    return balance(values), jax.jacfwd(balance)(values)
+    """Return the balance and its exact Jacobian."""
+    return problem.balance(values), jax.jacfwd(problem.balance)(values)
 
 
 def solve(problem: Problem) -> np.ndarray:

@@ -93,12 +93,13 @@ def _meetings(step: _Step) -> Iterator[Event]:
 
 def _crossings(step: _Step) -> Iterator[Event]:
     """Yield where two real eigenvalues pass each other."""
-    real = step.values.imag == 0
+    real, null = step.values.imag == 0, step.values == 0
     for i, j in itertools.combinations(range(step.values.shape[1]), 2):
         apart = (step.values[:, i] - step.values[:, j]).real
         both = real[:, i] & real[:, j]
         for before, after in _sign_changes(apart):
-            if both[before : after + 1].all():
+            stands = null[[before, after]].all(axis=0)  # what passes zero passes every null mode: told by _axis once
+            if both[before : after + 1].all() and not (stands[i] or stands[j]):
                 place, share = _zero(apart, before, after)
                 yield step.event("cross", (i, j), place, share)
 

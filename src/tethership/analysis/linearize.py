@@ -27,13 +27,12 @@ from tethership.system.state import STATE_NAMES, STATE_UNITS
 ROUTES = ("exact", "semi_analytic", "differences")
 """The three independent routes to A and U."""
 
-
 WORST_CONDITION = 1e8
 """Largest condition number of the mass matrix, lengths in half hulls: beyond it half of the digits are gone."""
 
 
 class Matrices(NamedTuple):
-    """A, U and what else is needed of a point.
+    """A and U of a point.
 
     Attributes
     ----------

@@ -3,7 +3,6 @@
 Depends on: analysis.spectrum, analysis.mode_names, analysis.linear_model.
 """
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -112,10 +111,6 @@ class Modes(NamedTuple):
                 f"there is no mode {name!r} here{suggestion(name, self.names)} There are: {', '.join(self.names)}"
             )
         return chosen[0]
-
-    def listed(self) -> Iterator[Mode]:
-        """Return the modes one by one, fastest first."""
-        return iter(self.modes)
 
 
 def find_modes(model: LinearModel) -> Modes:

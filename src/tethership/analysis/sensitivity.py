@@ -17,35 +17,21 @@ either: the slopes of A to both sides along the trims are compared, and where th
 from collections.abc import Sequence
 from typing import NamedTuple
 
-import equinox as eqx
-import jax
-import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float
 
-from tethership.analysis.continuation import place_values
-from tethership.analysis.equilibrium import Problem, solve
 from tethership.analysis.linearize import linearize
+from tethership.analysis.matrix_slopes import COEFFICIENTS, matrix_slopes
 from tethership.analysis.modes import find_modes
-from tethership.analysis.posing import Question, ask, pose, posed
-from tethership.analysis.right_side import input_vector, right_side
 from tethership.analysis.spectrum import Spectrum, analyse
 from tethership.analysis.trim import TrimOutcome, TrimPoint, trim
 from tethership.errors import SolveError
 from tethership.scenario import Scenario, ScenarioConfig
-from tethership.scenario.build import build_system
 from tethership.scenario.parameters import Parameter, list_parameters
-from tethership.spatial import STANDARD_GRAVITY
 
 TABLES = ("vehicle.", "atmosphere.", "wind.", "ground.", "cables.", "trim.")
 """Parts of a scenario on which a trim and its linear model depend."""
 
-COEFFICIENTS = "vehicle.hull.coefficients."
-
 WITHOUT_EFFECT = (".breaking_force", ".rewind_rate", ".fastest_rate")
-
-SIDE = 1e-4
-"""How far to the sides the slopes are looked at, of an ordinary step: curvature is not felt, rounding neither."""
 
 CORNER = 0.02
 """Relative difference of the slopes to both sides beyond which there is a corner."""
@@ -96,7 +82,7 @@ class Sensitivities(NamedTuple):
     multiplicity : int
         Size of the group: above 1 the derivatives are those of the group's mean, λ itself having none.
     rows : tuple of Sensitivity
-        Largest shift first; parameters that cannot be trimmed beside this point last.
+        Largest shift first; those without a derivative last.
     """
 
     mode: str
@@ -132,7 +118,7 @@ def sensitivities(scenario: Scenario, mode: str, point: TrimPoint | None = None)
     SolveError
         The scenario has no trim.
     ConfigError
-        There is no such mode.
+        There is no such mode, or the point is no answer to the scenario's own trim table.
 
     Notes
     -----
@@ -156,7 +142,7 @@ def rank_sensitivities(
     parameters = _relevant(scenario.config)
     length = scenario.config.vehicle.hull.length
     steps = np.array([ordinary_step(parameter, length) for parameter in parameters.values()])
-    slopes, exists, sided = matrix_slopes(scenario, list(parameters.values()), steps)
+    slopes, exists, sided = matrix_slopes(scenario, found, list(parameters.values()), steps)
     to_comparable, back = model.comparable, np.linalg.inv(model.comparable)
     tables = []
     for one in chosen:
@@ -188,16 +174,11 @@ def _relevant(config: ScenarioConfig) -> dict[str, Parameter]:
         and not (".direction." in name and parameter.value != 0.0)
     }
     closing = known.pop(f"{COEFFICIENTS}5", None)
-    return (
-        known
-        if closing is None
-        else known
-        | {
-            name: parameter._replace(leaves=(*parameter.leaves, closing.leaves[0]))
-            for name, parameter in known.items()
-            if name.startswith(COEFFICIENTS)
-        }
-    )
+    if closing is None:
+        return known
+    last = closing.leaves[0]
+    shape = {name: known[name]._replace(leaves=(*known[name].leaves, last)) for name in known if COEFFICIENTS in name}
+    return known | shape
 
 
 def _group(spectrum: Spectrum, eigenvalue: complex) -> tuple[tuple[int, ...], np.ndarray]:
@@ -230,142 +211,3 @@ def ordinary_step(parameter: Parameter, length: float) -> float:
     if parameter.value != 0.0 and parameter.unit != "rad" and not parameter.name.startswith(COEFFICIENTS):
         return 0.01 * abs(parameter.value)
     return 0.01 * (length if parameter.unit == "m" else 1.0)
-
-
-def matrix_slopes(
-    scenario: Scenario, parameters: Sequence[Parameter], steps: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray]]:
-    """Return dA/dp along the trims, whether a trim beside this one exists, and the slopes of A to both sides.
-
-    Parameters
-    ----------
-    scenario : Scenario
-        With a trim.
-    parameters : sequence of Parameter
-        With respect to which; one that stands for several numbers moves all of them alike.
-    steps : ndarray
-        An ordinary change of each [SI]; the sides are looked at `SIDE` of it away.
-
-    Notes
-    -----
-    Slopes have the shape (parameters, 12, 12).
-    """
-    config = scenario.config.as_arrays()
-    question = ask(scenario)
-    values = jnp.asarray(solve(posed(config, scenario.system, question)))
-    places = sorted({place for parameter in parameters for place in parameter.places})
-    leaves = jax.tree_util.tree_leaves(config)
-    current = jnp.stack([jnp.asarray(leaves[place]) for place in places])
-    fixed = tuple((place,) for place in places)
-    slopes, left, size, moved = _retrimmed(config, fixed, question, current, values)
-    combine = np.array([[_share(parameter, place) for place in places] for parameter in parameters])
-    missing = np.abs(np.einsum("kp,rp->kr", combine, left)).max(axis=1)
-    scale = np.maximum(np.abs(np.einsum("kp,rp->kr", combine, size)).max(axis=1), 1e-9)
-    sided = _one_sided(config, fixed, question, current, values, combine, combine @ moved.T, SIDE * steps)
-    return np.einsum("kp,ijp->kij", combine, slopes), missing < 1e-6 * scale, sided
-
-
-def _one_sided(
-    config: ScenarioConfig,
-    places: tuple[tuple[int, ...], ...],
-    question: Question,
-    current: Float[Array, "leaves"],
-    values: Float[Array, "unknowns"],
-    directions: np.ndarray,
-    moved: np.ndarray,
-    steps: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the slopes of A before and after the point along each direction of the numbers, the trim moving along."""
-    sign = np.concatenate([[0.0], -np.ones(len(steps)), np.ones(len(steps))])
-    reach = np.concatenate([[0.0], steps, steps]) * sign
-    numbers = np.asarray(current) + reach[:, None] * np.vstack([directions[:1], directions, directions])
-    unknowns = np.asarray(values) + reach[:, None] * np.vstack([moved[:1], moved, moved])
-    found = np.asarray(_matrices(config, places, question, jnp.asarray(numbers), jnp.asarray(unknowns)))
-    here, before, after = found[0], found[1 : len(steps) + 1], found[len(steps) + 1 :]
-    return (here - before) / steps[:, None, None], (after - here) / steps[:, None, None]
-
-
-@eqx.filter_jit
-def _matrices(
-    config: ScenarioConfig,
-    places: tuple[tuple[int, ...], ...],
-    question: Question,
-    numbers: Float[Array, "points leaves"],
-    values: Float[Array, "points unknowns"],
-) -> Float[Array, "points 12 12"]:
-    """Return A at many numbers and unknowns."""
-    return jax.vmap(lambda own, unknowns: _matrix(config, places, question, own, unknowns)[0])(numbers, values)
-
-
-def _matrix(
-    config: ScenarioConfig,
-    places: tuple[tuple[int, ...], ...],
-    question: Question,
-    numbers: Float[Array, "leaves"],
-    unknowns: Float[Array, "unknowns"],
-) -> tuple[Float[Array, "12 12"], Problem]:
-    """Return A at numbers of the scenario and unknowns of its trim, and the trim's problem there."""
-    here = place_values(config, places, numbers)
-    problem = pose(here, build_system(here), question)
-    state, command = problem.unpack(unknowns)
-    inputs = input_vector(problem.plant, command)
-    return jax.jacfwd(lambda s: right_side(problem.plant, s, inputs))(state.as_vector()), problem
-
-
-def _share(parameter: Parameter, place: int) -> float:
-    """Return how far one number moves with a parameter: −1 for the coefficient that closes the hull's tail."""
-    if place not in parameter.places:
-        return 0.0
-    return -1.0 if parameter.name.startswith(COEFFICIENTS) and place != parameter.places[0] else 1.0
-
-
-def _retrimmed(
-    config: ScenarioConfig,
-    places: tuple[tuple[int, ...], ...],
-    question: Question,
-    current: Float[Array, "leaves"],
-    values: Float[Array, "unknowns"],
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return dA/dp (12, 12, leaves) along the trims.
-
-    Then what is left of the balance's derivative after retrimming (6, leaves), that derivative itself, and the slopes
-    of the unknowns (unknowns, leaves).
-    """
-    count = len(places)
-    effort = np.diag(np.asarray(question.unknowns.effort))
-    slope = np.asarray(_slopes(config, places, question, current, values, jnp.zeros(6))[1])[:, count:]
-    multiplier = -np.linalg.pinv(slope.T, rcond=1e-9) @ (effort @ np.asarray(values))
-    matrix, balance, stationary = map(
-        np.asarray, _slopes(config, places, question, current, values, jnp.asarray(multiplier))
-    )
-    system = np.block([[effort + stationary[:, count:], slope.T], [slope, np.zeros((6, 6))]])
-    right = np.vstack([stationary[:, :count], balance[:, :count]])
-    moved = -(np.linalg.pinv(system, rcond=1e-10) @ right)[: len(slope.T)]
-    total = matrix[..., :count] + matrix[..., count:] @ moved
-    return total, balance[:, :count] + slope @ moved, balance[:, :count], moved
-
-
-@eqx.filter_jit
-def _slopes(
-    config: ScenarioConfig,
-    places: tuple[tuple[int, ...], ...],
-    question: Question,
-    current: Float[Array, "leaves"],
-    values: Float[Array, "unknowns"],
-    multiplier: Float[Array, "6"],
-) -> tuple[Array, Array, Array]:
-    """Return the derivatives of A, of the balance and of Jᵀμ with respect to numbers and unknowns (last axis)."""
-    count = len(places)
-
-    def everything(together: Float[Array, "n"]) -> tuple[Array, Array, Array]:
-        numbers, unknowns = together[:count], together[count:]
-        matrix, problem = _matrix(config, places, question, numbers, unknowns)
-        plant = problem.plant
-
-        def balance(unknowns: Array) -> Array:
-            unit = 1e-3 * plant.ship.gravity.mass * STANDARD_GRAVITY
-            return problem.residual(*problem.unpack(unknowns)) / unit
-
-        return matrix, balance(unknowns), multiplier @ jax.jacfwd(balance)(unknowns)
-
-    return jax.jacfwd(everything)(jnp.concatenate([current, values]))

@@ -157,11 +157,21 @@ def _nearest(name: str, known: Iterable[str]) -> list[str]:
     return near[:3]
 
 
-def with_values(config: ScenarioConfig, parameters: Iterable[Parameter], values: Iterable[Any]) -> ScenarioConfig:
-    """Return a configuration with parameters set, without validation; values [SI]."""
+def with_values(config: ScenarioConfig, places: Iterable[Iterable[int]], values: Iterable[Any]) -> ScenarioConfig:
+    """Return a configuration with the leaves that each parameter moves set to its value [SI], without validation.
+
+    Parameters
+    ----------
+    config : ScenarioConfig
+        What is changed.
+    places : iterable
+        `Parameter.places` of each.
+    values : iterable
+        Values; they may be traced.
+    """
     leaves, structure = jax.tree_util.tree_flatten(config)
-    for parameter, value in zip(parameters, values, strict=True):
-        for place in parameter.places:
+    for group, value in zip(places, values, strict=True):
+        for place in group:
             leaves[place] = value
     return jax.tree_util.tree_unflatten(structure, leaves)
 
@@ -197,7 +207,8 @@ def _document_at(scenario: Scenario, parameters: Sequence[Parameter], values: Se
     if len(set(places)) != len(places):
         names = ", ".join(parameter.name for parameter in parameters)
         raise ConfigError(f"two of {names} are the same number; name each once")
-    config = with_values(scenario.config, parameters, [float(value) for value in values])
+    groups = [parameter.places for parameter in parameters]
+    config = with_values(scenario.config, groups, [float(value) for value in values])
     document = copy.deepcopy(scenario.document)
     for leaf in (leaf for parameter in parameters for leaf in parameter.leaves):
         table = leaf.key.split(".")[0]

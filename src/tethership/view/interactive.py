@@ -139,7 +139,7 @@ def _marks(panel: Panel) -> list[go.Scatter]:
             go.Scatter(x=roots.real, y=roots.imag, mode="markers", marker=marker, hoverinfo="skip", name="reference")
         )
     if panel.free is not None:
-        modes = list(panel.free.listed())
+        modes = panel.free.modes
         free: Complex = np.array([v for m in modes for v in (m.eigenvalue, m.eigenvalue.conjugate())], np.complex128)
         names = [mode.name for mode in modes for _ in range(2)]
         marker = {"symbol": "circle-open", "size": 12, "color": style.INK}
