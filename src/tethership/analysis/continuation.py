@@ -78,7 +78,7 @@ class Batch(NamedTuple):
     comparable: Any
 
 
-def _newton(problem: Problem, start: Float[Array, "unknowns"]) -> Float[Array, "unknowns"]:
+def nearby_equilibrium(problem: Problem, start: Float[Array, "unknowns"]) -> Float[Array, "unknowns"]:
     """Return the unknowns of an equilibrium with the least effort, from a start nearby.
 
     Notes
@@ -120,7 +120,7 @@ def _solve_batch(
         here = with_values(config, places, value)
         plant = build_system(here)
         problem = pose(here, plant, question)
-        found = _newton(problem, start)
+        found = nearby_equilibrium(problem, start)
         state, command, tension, residual, _ = described(problem, found)
         vector, inputs = state.as_vector(), input_vector(plant, command)
         matrix = jax.jacfwd(lambda s: right_side(plant, s, inputs))(vector)

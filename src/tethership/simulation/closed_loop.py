@@ -115,6 +115,9 @@ class ClosedLoop(eqx.Module):
 
     def vector_field(self, time: Float[Array, ""], vector: Float[Array, "n"]) -> Float[Array, "n"]:
         """Return the time derivative of the integrator's vector at time t [s]; dL_t/dt = −Ψ."""
-        now = self.instant(time, vector)
+        return self.rate(self.instant(time, vector))
+
+    def rate(self, now: Instant) -> Float[Array, "n"]:
+        """Return the time derivative of the integrator's vector at an instant."""
         rate = derivative(now.state, now.loads, self.plant.ship, self.plant.environment)
         return jnp.concatenate([rate.as_vector(), -now.rewind_rate, ravel_pytree(now.memory_rate)[0]])

@@ -16,14 +16,14 @@ from tethership._version import __version__
 from tethership.control import AbstractLaw
 from tethership.errors import ConfigError, SolveError
 from tethership.results import store
-from tethership.scenario import Scenario, SolverConfig, read_solver
+from tethership.scenario import Scenario, ScenarioConfig, SolverConfig, read_solver
 from tethership.scenario.load import from_document
 from tethership.simulation.closed_loop import ClosedLoop
 from tethership.simulation.events import StopConditions
 from tethership.simulation.flight import Flight, Progress, fly
 from tethership.simulation.outcome import Outcome
 from tethership.spatial import rotation_matrix
-from tethership.system import Command, State
+from tethership.system import Command, State, TetheredAirship
 
 
 class Start(Protocol):
@@ -50,20 +50,23 @@ def start_state(scenario: Scenario, trimmed: State) -> State:
     trimmed : State
         State at trim.
     """
-    start, cables = scenario.config.start, scenario.system.cables
-    held = cables[0].tether_point if start.hold == "tether_point" and cables else np.zeros(3)
-    return _turned(trimmed, np.asarray(start.attitude_offset), held)
+    return _moved(scenario.config.as_arrays(), scenario.system, trimmed)
 
 
-@jax.jit
-def _turned(state: State, offset: Float[Array, "3"], held: Float[Array, "3"]) -> State:
-    """Return a state with its attitude moved [rad] about a point of the body [m]."""
-    attitude = state.attitude + offset
-    moved = (rotation_matrix(state.attitude) - rotation_matrix(attitude)) @ held
-    return State(state.velocity, state.rates, attitude, state.position + moved)
+def moved_start(config: ScenarioConfig, plant: TetheredAirship, trimmed: State) -> State:
+    """Return `start_state` of a configuration and its plant; can be traced."""
+    start = config.start
+    held = plant.cables[0].tether_point if start.hold == "tether_point" and plant.cables else jnp.zeros(3)
+    attitude = trimmed.attitude + jnp.asarray(start.attitude_offset)
+    moved = (rotation_matrix(trimmed.attitude) - rotation_matrix(attitude)) @ held
+    return State(trimmed.velocity, trimmed.rates, attitude, trimmed.position + moved)
 
 
-def _stop_conditions(scenario: Scenario) -> StopConditions:
+_moved = eqx.filter_jit(moved_start)
+
+
+def stop_conditions(scenario: Scenario) -> StopConditions:
+    """Return what ends a flight of a scenario."""
     stop = scenario.config.stop
     return StopConditions(
         jnp.asarray(stop.cable_length),
@@ -139,7 +142,7 @@ def dock(
     active = scenario.config.control.sas if sas is None else sas
     law = scenario.law(names, active).joined(own_laws or {})
     loop = ClosedLoop(scenario.system, law, point.command)
-    stop = _stop_conditions(scenario)
+    stop = stop_conditions(scenario)
     vector, margins = _begin(loop, stop, start_state(scenario, point.state))
     _check_start(margins)
     flown = fly(loop, vector, stop, config, scenario.config.stop.time_limit, progress)

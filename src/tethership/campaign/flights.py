@@ -1,0 +1,195 @@
+"""Flights of one scenario with other values of its parameters, trimmed and flown in batches.
+
+Depends on: analysis (trim), simulation (flights), scenario. Every flight is what `trim` and `dock` do for its values,
+with fixed steps; the batch is the last axis, and two batches fly side by side on two cores.
+"""
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from tethership.analysis.continuation import nearby_equilibrium
+from tethership.analysis.posing import Question, ask, pose
+from tethership.errors import ConfigError
+from tethership.scenario import Scenario, ScenarioConfig, list_parameters
+from tethership.scenario.build import build_system
+from tethership.scenario.laws import build_law
+from tethership.scenario.parameters import find_parameter, with_values
+from tethership.simulation.batch import STEP, BatchResult, differing, fly_lanes, hoisted, metrics_of
+from tethership.simulation.closed_loop import ClosedLoop
+from tethership.simulation.docking import moved_start, stop_conditions
+from tethership.simulation.events import StopConditions
+
+BATCH = 192
+"""Flights of one compiled call: fixed, so that every campaign runs the same program."""
+
+SWITCHES = {
+    "rewind": ("control.rewind.gain",),
+    "heading": ("control.heading.gain",),
+    "navigation": tuple(
+        f"control.navigation.{name}" for name in ("position_gain", "vertical_gain", "speed_gain", "climb_gain")
+    ),
+}
+"""Gains of each layer: with all of them zero it does nothing, so that one program flies every set of layers."""
+
+Progress = Callable[[int, int], None]
+"""Called with the number of flights flown and their total."""
+
+
+class Cases(NamedTuple):
+    """What differs from flight to flight.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Dotted names of the parameters.
+    values : ndarray
+        Their values [SI], shape (flights, parameters).
+    """
+
+    names: tuple[str, ...]
+    values: np.ndarray
+
+    def with_columns(self, columns: Mapping[str, np.ndarray]) -> "Cases":
+        """Return the cases with more parameters, or the same ones replaced; columns of shape (flights,)."""
+        kept = [i for i, name in enumerate(self.names) if name not in columns]
+        added = [np.broadcast_to(value, len(self.values)) for value in columns.values()]
+        values = np.column_stack([self.values[:, kept], *added])
+        return Cases((*(self.names[i] for i in kept), *columns), values)
+
+
+def layer_switches(scenario: Scenario, layers: Sequence[str]) -> dict[str, float]:
+    """Return the gains that make a scenario's law act with these layers only, the others being zero."""
+    known = list_parameters(scenario.config)
+    return {
+        name: known[name].value if layer in layers else 0.0 for layer, names in SWITCHES.items() for name in names
+    }
+
+
+@eqx.filter_jit
+def _prepared(
+    config: ScenarioConfig,
+    places: tuple[tuple[int, ...], ...],
+    question: Question,
+    values: Float[Array, "parameters flights"],
+    start: Float[Array, "unknowns"],
+) -> tuple[ClosedLoop, Array, Array]:
+    """Return closed loops, starting vectors and what is left unbalanced, the flight last."""
+
+    def one(value: Float[Array, "parameters"]) -> tuple[ClosedLoop, Array, Array]:
+        here = with_values(config, places, value)
+        plant = build_system(here)
+        problem = pose(here, plant, question)
+        found = nearby_equilibrium(problem, start)
+        state, command = problem.unpack(found)
+        loop = ClosedLoop(plant, build_law(here), command)
+        vector = loop.initial(moved_start(here, plant, state))
+        return loop, vector, jnp.max(jnp.abs(problem.balance(found)))
+
+    example = eqx.filter_eval_shape(one, jax.ShapeDtypeStruct(values.shape[:1], values.dtype))
+    static = eqx.filter(example[0], lambda leaf: isinstance(leaf, jax.ShapeDtypeStruct), inverse=True)
+
+    def arrays(value: Float[Array, "parameters"]) -> tuple[ClosedLoop, Array, Array]:
+        loop, vector, left = one(value)
+        return eqx.filter(loop, eqx.is_array), vector, left
+
+    loops, vectors, left = jax.vmap(arrays, in_axes=-1, out_axes=-1)(values)
+    return eqx.combine(loops, static), vectors, left
+
+
+@eqx.filter_jit
+def _flown(
+    loops: ClosedLoop,
+    axes: ClosedLoop,
+    stop: StopConditions,
+    limits: Float[Array, "limits"],
+    vectors: Float[Array, "n flights"],
+    time_limit: Float[Array, ""],
+    step: Float[Array, ""],
+) -> BatchResult:
+    return fly_lanes(loops, axes, stop, limits, vectors, time_limit, step)
+
+
+def fly_cases(
+    scenario: Scenario,
+    cases: Cases,
+    step: float = STEP,
+    progress: Progress | None = None,
+    unbreakable: bool = False,
+) -> dict[str, np.ndarray]:
+    """Return the metrics of many flights.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What they have in common; all its control layers act (see `layer_switches`).
+    cases : Cases
+        What differs.
+    step : float
+        Length of a step h [s].
+    progress : callable, optional
+        Called after every batch.
+    unbreakable : bool
+        Let a flight go on beyond the cable's breaking force, as a fit needs it.
+
+    Returns
+    -------
+    dict[str, ndarray]
+        As `simulation.batch.metrics_of`, first axis the flight; `unbalanced` is what the trim left, in 1e-3 of the
+        weight.
+
+    Raises
+    ------
+    ConfigError
+        A parameter does not exist or is named twice.
+    """
+    known = list_parameters(scenario.config)
+    parameters = [find_parameter(known, name, scenario.name) for name in cases.names]
+    places = tuple(parameter.places for parameter in parameters)
+    flat = [place for group in places for place in group]
+    if len(set(flat)) != len(flat):
+        raise ConfigError(f"two of {', '.join(cases.names)} are the same number; name each once")
+    config = scenario.config.as_arrays()
+    question = ask(scenario)
+    start = jnp.zeros(len(question.unknowns.effort))
+    stop = stop_conditions(scenario)
+    limits = jnp.asarray(scenario.config.watched_tensions())
+    if unbreakable:
+        config = _unbreakable(config)
+    shared = stop, limits, jnp.asarray(scenario.config.stop.time_limit), jnp.asarray(step)
+
+    probe = np.repeat(cases.values[:1], BATCH, axis=0)
+    probe[1::2] = 1.01 * probe[1::2] + 1e-3
+    differ = differing(_prepared(config, places, question, jnp.asarray(probe.T), start)[0])
+
+    def batch(rows: np.ndarray) -> dict[str, np.ndarray]:
+        values = jnp.asarray(cases.values[rows].T)
+        loops, vectors, left = _prepared(config, places, question, values, start)
+        held, axes = hoisted(loops, differ)
+        result = _flown(held, axes, shared[0], shared[1], vectors, shared[2], shared[3])
+        return {**metrics_of(result), "unbalanced": np.asarray(left)}
+
+    count = len(cases.values)
+    chunks = [np.minimum(np.arange(first, first + BATCH), count - 1) for first in range(0, count, BATCH)]
+    done = 0
+    found: list[dict[str, np.ndarray]] = []
+    with ThreadPoolExecutor(max_workers=min(2, os.cpu_count() or 1)) as pool:
+        for result in pool.map(batch, chunks):
+            found.append(result)
+            done = min(done + BATCH, count)
+            if progress is not None:
+                progress(done, count)
+    return {name: np.concatenate([part[name] for part in found])[:count] for name in found[0]}
+
+
+def _unbreakable(config: ScenarioConfig) -> ScenarioConfig:
+    """Return a configuration whose cables do not break."""
+    cables = tuple(cable.model_copy(update={"breaking_force": np.asarray(1e12)}) for cable in config.cables)
+    return config.model_copy(update={"cables": cables})

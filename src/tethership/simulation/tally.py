@@ -1,0 +1,190 @@
+"""Metrics of Tables 3–6 summed up while a flight is flown, so that a batch keeps no samples.
+
+Depends on: simulation.closed_loop, control, physics by their results. The definitions are those of `results.metrics`,
+which reads them off a flight's samples; a test holds the two against each other.
+"""
+
+from typing import NamedTuple
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from tethership.control import misalignment
+from tethership.simulation.closed_loop import ClosedLoop, Instant
+from tethership.spatial import safe_norm
+from tethership.system.tethered import end_tension
+
+
+class Signals(NamedTuple):
+    """What the metrics look at, at one time.
+
+    Attributes
+    ----------
+    tension : Float[Array, ""]
+        At the tether point of the cable that pulls hardest [N].
+    largest : Float[Array, ""]
+        Largest tension anywhere along any cable [N].
+    throttle : Float[Array, "thrusters"]
+        δ [-].
+    pitch : Float[Array, ""]
+        θ [rad].
+    saturated : Float[Array, ""]
+        1 where any thruster is asked for more than it has.
+    rewind_rate : Float[Array, ""]
+        Slowest Ψ of the winches [m/s].
+    clearance : Float[Array, ""]
+        Of the hull [m].
+    misalignment : Float[Array, ""]
+        χ of the first cable [rad].
+    elongation : Float[Array, ""]
+        e of the first cable [-].
+    """
+
+    tension: Float[Array, ""]
+    largest: Float[Array, ""]
+    throttle: Float[Array, "thrusters"]
+    pitch: Float[Array, ""]
+    saturated: Float[Array, ""]
+    rewind_rate: Float[Array, ""]
+    clearance: Float[Array, ""]
+    misalignment: Float[Array, ""]
+    elongation: Float[Array, ""]
+
+
+def signals(loop: ClosedLoop, now: Instant) -> Signals:
+    """Return the signals at an instant; a ship without cables has no tension."""
+    cables, zero = now.cables, jnp.zeros(())
+    tension = jnp.max(jnp.stack([safe_norm(c.ship) for c in cables])) if cables else zero
+    return Signals(
+        tension=tension,
+        largest=jnp.max(jnp.stack([end_tension(c) for c in cables])) if cables else zero,
+        throttle=now.command.throttle,
+        pitch=now.state.attitude[1],
+        saturated=jnp.any(now.saturated).astype(float),
+        rewind_rate=jnp.min(now.rewind_rate) if cables else zero,
+        clearance=loop.plant.environment.ground - loop.plant.ship.lowest_point(now.state),
+        misalignment=misalignment(now.state.attitude, cables[0].span) if cables else zero,
+        elongation=safe_norm(cables[0].span) / now.lengths[0] if cables else zero,
+    )
+
+
+class Tally(NamedTuple):
+    """Sums up to now.
+
+    Attributes
+    ----------
+    time : Float[Array, ""]
+        t [s].
+    last, before : Signals
+        Signals of the last step and of the one before.
+    tension_max, largest_max : Float[Array, ""]
+        Peaks [N].
+    tension_sum, effort_sum, pitch_sum, saturated_sum : Float[Array, ""]
+        ∫|F| dt [N s], Σ∫|δ| dt [s], ∫θ² dt [rad² s], time with a thruster saturated [s].
+    travel : Float[Array, ""]
+        Σ∫|dδ/dt| dt [-].
+    above : Float[Array, "limits"]
+        Time above each limit [s].
+    slowest, clearance : Float[Array, ""]
+        Least Ψ [m/s] and hull clearance [m].
+    jumps : Float[Array, ""]
+        How often χ jumped by more than a right angle.
+    """
+
+    time: Float[Array, ""]
+    last: Signals
+    before: Signals
+    tension_max: Float[Array, ""]
+    largest_max: Float[Array, ""]
+    tension_sum: Float[Array, ""]
+    effort_sum: Float[Array, ""]
+    pitch_sum: Float[Array, ""]
+    saturated_sum: Float[Array, ""]
+    travel: Float[Array, ""]
+    above: Float[Array, "limits"]
+    slowest: Float[Array, ""]
+    clearance: Float[Array, ""]
+    jumps: Float[Array, ""]
+
+
+def begin(first: Signals, limits: Float[Array, "limits"]) -> Tally:
+    """Return the tally at t = 0 for the first signals and the limits of tension [N]."""
+    zero = jnp.zeros(())
+    return Tally(
+        zero,
+        first,
+        first,
+        first.tension,
+        first.largest,
+        zero,
+        zero,
+        zero,
+        zero,
+        zero,
+        jnp.zeros_like(limits),
+        first.rewind_rate,
+        first.clearance,
+        zero,
+    )
+
+
+def _vertex(before: Array, middle: Array, after: Array) -> Array:
+    """Return the top of the parabola through three samples where the middle one is highest, else the middle."""
+    slope, bend = 0.5 * (after - before), before - 2.0 * middle + after
+    top = (middle > before) & (middle >= after)
+    return middle - jnp.where(top, 0.5 * slope**2 / jnp.where(top, bend, -1.0), 0.0)
+
+
+def _share_above(start: Array, end: Array, limit: Array) -> Array:
+    """Return the share of a step that a straight line from start to end is above a limit [-]."""
+    over, later = start - limit, end - limit
+    crossing = jnp.clip(-over / jnp.where(later == over, 1.0, later - over), 0.0, 1.0)
+    one_sided = jnp.where(over > 0, crossing, jnp.where(later > 0, 1.0 - crossing, 0.0))
+    return jnp.where((over > 0) & (later > 0), 1.0, one_sided)
+
+
+def add(
+    tally: Tally, now: Signals, step: Float[Array, ""], share: Float[Array, ""], limits: Float[Array, "limits"]
+) -> Tally:
+    """Return the tally with one step more.
+
+    Parameters
+    ----------
+    tally : Tally
+        So far.
+    now : Signals
+        At the step's end.
+    step : Float[Array, ""]
+        Its length h [s].
+    share : Float[Array, ""]
+        Part of it that was flown before the flight ended, 0 … 1 [-].
+    limits : Float[Array, "limits"]
+        Tensions whose exceedance is timed [N].
+
+    Notes
+    -----
+    Trapezia; where the flight ends inside the step, every signal is taken along a straight line up to there. The
+    peak is the top of the parabola through three samples: a snap lasts a few of them.
+    """
+    last, span = tally.last, share * step
+    partly = lambda start, end: span * (start + 0.5 * share * (end - start))  # noqa: E731
+    reached = lambda start, end: start + share * (end - start)  # noqa: E731
+    tension = reached(last.tension, now.tension)
+    top = _vertex(tally.before.tension, last.tension, jnp.where(share < 1.0, tension, now.tension))
+    peak = jnp.maximum(jnp.where(span > 0, top, last.tension), jnp.maximum(last.tension, tension))
+    return Tally(
+        time=tally.time + span,
+        last=now,
+        before=last,
+        tension_max=jnp.maximum(tally.tension_max, peak),
+        largest_max=jnp.maximum(tally.largest_max, reached(last.largest, now.largest)),
+        tension_sum=tally.tension_sum + partly(last.tension, now.tension),
+        effort_sum=tally.effort_sum + jnp.sum(partly(jnp.abs(last.throttle), jnp.abs(now.throttle))),
+        pitch_sum=tally.pitch_sum + partly(last.pitch**2, now.pitch**2),
+        saturated_sum=tally.saturated_sum + partly(last.saturated, now.saturated),
+        travel=tally.travel + share * jnp.sum(jnp.abs(now.throttle - last.throttle)),
+        above=tally.above + span * _share_above(last.tension, tension, limits),
+        slowest=jnp.minimum(tally.slowest, reached(last.rewind_rate, now.rewind_rate)),
+        clearance=jnp.minimum(tally.clearance, reached(last.clearance, now.clearance)),
+        jumps=tally.jumps + (jnp.abs(now.misalignment - last.misalignment) > 0.5 * jnp.pi) * (share >= 1.0),
+    )
