@@ -30,6 +30,9 @@ from tethership.simulation.events import StopConditions
 BATCH = 192
 """Flights of one compiled call: fixed, so that every campaign runs the same program."""
 
+FEW = 24
+"""The same where there are no more than twice as many."""
+
 SWITCHES = {
     "rewind": ("control.rewind.gain",),
     "heading": ("control.heading.gain",),
@@ -165,7 +168,9 @@ def fly_cases(
         config = _unbreakable(config)
     shared = stop, limits, jnp.asarray(scenario.config.stop.time_limit), jnp.asarray(step)
 
-    probe = np.repeat(cases.values[:1], BATCH, axis=0)
+    count = len(cases.values)
+    size = FEW if count <= 2 * FEW else BATCH
+    probe = np.repeat(cases.values[:1], size, axis=0)
     probe[1::2] = 1.01 * probe[1::2] + 1e-3
     differ = differing(_prepared(config, places, question, jnp.asarray(probe.T), start)[0])
 
@@ -176,14 +181,13 @@ def fly_cases(
         result = _flown(held, axes, shared[0], shared[1], vectors, shared[2], shared[3])
         return {**metrics_of(result), "unbalanced": np.asarray(left)}
 
-    count = len(cases.values)
-    chunks = [np.minimum(np.arange(first, first + BATCH), count - 1) for first in range(0, count, BATCH)]
+    chunks = [np.minimum(np.arange(first, first + size), count - 1) for first in range(0, count, size)]
     done = 0
     found: list[dict[str, np.ndarray]] = []
     with ThreadPoolExecutor(max_workers=min(2, os.cpu_count() or 1)) as pool:
         for result in pool.map(batch, chunks):
             found.append(result)
-            done = min(done + BATCH, count)
+            done = min(done + size, count)
             if progress is not None:
                 progress(done, count)
     return {name: np.concatenate([part[name] for part in found])[:count] for name in found[0]}

@@ -43,6 +43,9 @@ class HeadingLaw(AbstractLaw):
         κ_χ [1/rad].
     share : Float[Array, "thrusters"]
         Throttle of each thruster per unit of demand [-].
+    measured_behind : float
+        How far behind the tether point, along the hull's axis, the point sits from which χ is measured [m]; 0 for the
+        tether point itself.
     fade_radius : float
         Horizontal distance to the anchor below which the law fades out linearly [m]; 0 for never.
     """
@@ -50,6 +53,11 @@ class HeadingLaw(AbstractLaw):
     gain: Float[Array, ""]
     share: Float[Array, "thrusters"]
     fade_radius: Float[Array, ""]
+    measured_behind: Float[Array, ""]
+
+    def angle(self, misaligned: Float[Array, ""]) -> Float[Array, ""]:
+        """Return the angle the law acts on [rad] from χ [rad]: χ itself, −π … π."""
+        return misaligned
 
     def __call__(
         self, time: Float[Array, ""], measurement: Measurement, memory: tuple[()]
@@ -61,8 +69,32 @@ class HeadingLaw(AbstractLaw):
         Δδ = share κ_χ χ; the paper's shares make it Δδ₅ = −κ_χ χ, Δδ₆ = +κ_χ χ.
         """
         offset = measurement.offset[0]
-        angle = misalignment(measurement.attitude, offset)
+        behind = self.measured_behind * rotation_matrix(measurement.attitude)[:, 0]
+        angle = self.angle(misalignment(measurement.attitude, offset - behind))
         fading = self.fade_radius > 0
         distance = safe_norm(offset[:2])
         weight = jnp.where(fading, jnp.minimum(distance / jnp.where(fading, self.fade_radius, 1.0), 1.0), 1.0)
         return Correction(throttle=self.share * self.gain * weight * angle), memory
+
+
+class SineHeadingLaw(HeadingLaw):
+    """Heading control on arcsin(sin χ): the angle as the cross product of two unit vectors gives it.
+
+    With the anchor astern it is small, and does not jump from π to −π there; with the tether point passing over the
+    anchor it still changes sign.
+    """
+
+    def angle(self, misaligned: Float[Array, ""]) -> Float[Array, ""]:
+        """Return the angle between −½π and ½π [rad] with the sine of χ [rad]."""
+        return jnp.where(jnp.abs(misaligned) > 0.5 * jnp.pi, jnp.sign(misaligned) * jnp.pi - misaligned, misaligned)
+
+
+class LineHeadingLaw(HeadingLaw):
+    """Heading control on the angle between the hull's axis and the line to the anchor, whichever way it points.
+
+    It does not jump when the tether point passes over the anchor, but where the line stands across the hull.
+    """
+
+    def angle(self, misaligned: Float[Array, ""]) -> Float[Array, ""]:
+        """Return the angle between −½π and ½π [rad] with the tangent of χ [rad]."""
+        return jnp.where(jnp.abs(misaligned) > 0.5 * jnp.pi, misaligned - jnp.sign(misaligned) * jnp.pi, misaligned)

@@ -10,11 +10,14 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from tethership.control.law import AbstractLaw, Correction, Measurement, clip
-from tethership.spatial import horizontal_unit, rotation_matrix
+from tethership.spatial import horizontal_unit, rotation_matrix, safe_norm
 
 
 class NavigationLaw(AbstractLaw):
     """Position and speed feedback ahead and up, towards the first cable's anchor.
+
+    The error ahead is that along the nose (the text's "along the projection of b₁ on the horizontal plane");
+    `LineOfSightNavigationLaw` takes the whole horizontal distance instead.
 
     Attributes
     ----------
@@ -40,6 +43,10 @@ class NavigationLaw(AbstractLaw):
     forward_share: Float[Array, "thrusters"]
     vertical_share: Float[Array, "thrusters"]
 
+    def ahead(self, offset: Float[Array, "3"], nose: Float[Array, "2"]) -> Float[Array, ""]:
+        """Return ε_hor [m] from the tether point's offset [m] and the nose's horizontal unit vector, ground axes."""
+        return jnp.dot(offset[:2], nose)
+
     def __call__(
         self, time: Float[Array, ""], measurement: Measurement, memory: tuple[()]
     ) -> tuple[Correction, tuple[()]]:
@@ -53,10 +60,18 @@ class NavigationLaw(AbstractLaw):
         """
         offset = measurement.offset[0]
         nose = horizontal_unit(rotation_matrix(measurement.attitude))
-        ahead = jnp.dot(offset[:2], nose)
+        ahead = self.ahead(offset, nose)
         below = offset[2]
         speed = clip(-self.speed_slope * ahead, self.largest_speed)
         climb = clip(self.speed_slope * below, self.largest_climb)
         forward = -self.position_gain * ahead - self.speed_gain * (measurement.velocity[0] - speed)
         downward = -self.vertical_gain * below + self.climb_gain * (measurement.rate_of_climb - climb)
         return Correction(throttle=self.forward_share * forward + self.vertical_share * downward), memory
+
+
+class LineOfSightNavigationLaw(NavigationLaw):
+    """Navigation with the whole horizontal distance to the anchor as the error ahead, with the sign of that ahead."""
+
+    def ahead(self, offset: Float[Array, "3"], nose: Float[Array, "2"]) -> Float[Array, ""]:
+        """Return ±|ε_hor| [m], negative with the anchor ahead; arguments as in `NavigationLaw.ahead`."""
+        return jnp.where(jnp.dot(offset[:2], nose) >= 0, 1.0, -1.0) * safe_norm(offset[:2])

@@ -54,6 +54,61 @@ class CosineGust(AbstractGust):
         return jnp.stack([self.start, self.start + self.period])
 
 
+class RepeatedCosine(AbstractGust):
+    """Pulses as `CosineGust`'s, one after the other to the end.
+
+    Attributes
+    ----------
+    amplitude : Float[Array, "3"]
+        Peak velocity, a vector in ground axes [m/s].
+    start : float
+        Time at which the first begins t₀ [s].
+    period : float
+        Duration of each T [s].
+    """
+
+    amplitude: Float[Array, "3"]
+    start: Float[Array, ""]
+    period: Float[Array, ""]
+
+    def velocity(self, time: Float[Array, ""]) -> Float[Array, "3"]:
+        """Return ½A (1 − cos 2π(t − t₀)/T) for t > t₀ [m/s], ground axes, at time t [s]; C¹ in t."""
+        phase = jnp.maximum((time - self.start) / self.period, 0.0)
+        return 0.5 * self.amplitude * (1.0 - jnp.cos(2.0 * jnp.pi * phase))
+
+    def corners(self) -> Float[Array, "1"]:
+        """Return the time [s] at which it begins."""
+        return jnp.stack([self.start])
+
+
+class BareCosine(AbstractGust):
+    """One period of A cos 2π(t − t₀)/T, which begins and ends with a jump.
+
+    Attributes
+    ----------
+    amplitude : Float[Array, "3"]
+        Peak velocity A, a vector in ground axes [m/s].
+    start : float
+        Time at which it begins t₀ [s].
+    period : float
+        Its duration T [s].
+    """
+
+    amplitude: Float[Array, "3"]
+    start: Float[Array, ""]
+    period: Float[Array, ""]
+
+    def velocity(self, time: Float[Array, ""]) -> Float[Array, "3"]:
+        """Return the velocity added to the wind [m/s], ground axes, at time t [s]; the jumps have no rate."""
+        phase = (time - self.start) / self.period
+        inside = (phase >= 0.0) & (phase < 1.0)
+        return jnp.where(inside, 1.0, 0.0) * self.amplitude * jnp.cos(2.0 * jnp.pi * jnp.where(inside, phase, 0.0))
+
+    def corners(self) -> Float[Array, "2"]:
+        """Return the times [s] of its jumps, for the integrator to step on."""
+        return jnp.stack([self.start, self.start + self.period])
+
+
 class WindChange(AbstractGust):
     """A change of the wind and of its rate at t = 0: the wind as an input of a linear model.
 

@@ -15,7 +15,7 @@ class Claim(NamedTuple):
     Attributes
     ----------
     name : str
-        L1 … L9.
+        L1 … L9, D1 … D11.
     statement : str
         What the paper says.
     parts : dict[str, bool]

@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 from tethership.physics.atmosphere import AbstractAtmosphere, ConstantAtmosphere, StandardAtmosphere
 from tethership.physics.cable import AbstractTensionLaw, CableLoad, ElasticCatenary, PublishedTension
 from tethership.physics.ground_effect import GroundEffect
-from tethership.physics.gust import CosineGust
+from tethership.physics.gust import AbstractGust, BareCosine, CosineGust, RepeatedCosine
 from tethership.physics.winch import Winch
 from tethership.physics.wind import AbstractWind, PowerLawWind, UniformWind
 from tethership.scenario.build_ship import build_hull, build_ship, slice_integrals
@@ -47,10 +47,14 @@ def _wind(config: UniformWindConfig | PowerLawWindConfig, ground: Float[Array, "
     )
 
 
-def _gust(config: GustConfig, wind_speed: float) -> CosineGust:
+GUSTS = {"one_minus_cosine": CosineGust, "repeated": RepeatedCosine, "cosine": BareCosine}
+"""Gusts by the shape that a file names."""
+
+
+def _gust(config: GustConfig, wind_speed: float) -> AbstractGust:
     peak = config.speed if config.fraction is None else config.fraction * wind_speed
     direction = direction_from(jnp.asarray(config.from_direction), jnp.asarray(config.upward_angle))
-    return CosineGust(jnp.asarray(peak) * direction, jnp.asarray(config.start), jnp.asarray(config.period))
+    return GUSTS[config.shape](jnp.asarray(peak) * direction, jnp.asarray(config.start), jnp.asarray(config.period))
 
 
 def build_environment(config: ScenarioConfig) -> Environment:
@@ -94,6 +98,7 @@ def _cable(config: CableConfig, formulation: str, shift: Float[Array, "3"]) -> C
         ),
         law=law,
         winch=Winch(jnp.asarray(config.winch.rewind_rate), jnp.asarray(config.winch.fastest_rate)),
+        load_reference=jnp.asarray(config.load_reference),
     )
 
 

@@ -4,7 +4,7 @@ Depends on: scenario.quantity.
 """
 
 from collections.abc import Iterable, Sequence
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, field_validator
 
@@ -53,15 +53,21 @@ class RewindConfig(Table):
 
 
 class HeadingConfig(Table):
-    """Table A.3 of the paper; `fade_radius` 0 never fades."""
+    """Table A.3 of the paper.
+
+    `fade_radius` 0 never fades, `measured_behind` moves the point from which χ is measured aft, and `angle` says whether
+    the law acts on χ itself (`full`), on arcsin sin χ (`sine`) or on the angle to the line, either way round (`line`).
+    """
 
     gain: Annotated[float, Quantity("1/rad")] = 5.0
     fade_radius: Annotated[float, Quantity("m", low=0.0)] = 0.0
+    measured_behind: Annotated[float, Quantity("m")] = 0.0
+    angle: Literal["full", "sine", "line"] = "full"
     share: Share = Field(default_factory=dict)
 
 
 class NavigationConfig(Table):
-    """Table A.4 of the paper."""
+    """Table A.4 of the paper; `range` is the error ahead: along the nose, or the whole horizontal distance."""
 
     position_gain: Annotated[float, Quantity("1/m")] = 0.0033
     vertical_gain: Annotated[float, Quantity("1/m")] = 0.0033
@@ -70,15 +76,21 @@ class NavigationConfig(Table):
     speed_slope: Annotated[float, Quantity("1/s", low=0.0)] = 0.1
     largest_speed: Annotated[float, Quantity("m/s", low=0.0)] = 0.5
     largest_climb: Annotated[float, Quantity("m/s", low=0.0)] = 0.5
+    range: Literal["along_nose", "line_of_sight"] = "along_nose"
     forward_share: Share = Field(default_factory=dict)
     vertical_share: Share = Field(default_factory=dict)
 
 
 class ControlConfig(Table):
-    """Which laws act and with what gains."""
+    """Which laws act and with what gains.
+
+    With `gain_thrust` given, gains command thrust in multiples of it, not throttle: each thruster's throttle is then
+    its share times gain_thrust over its own nominal thrust.
+    """
 
     layers: tuple[str, ...] = ()
     sas: bool = True
+    gain_thrust: Annotated[float, Quantity("N", positive=True)] | None = None
     attitude: AttitudeConfig = AttitudeConfig()
     rewind: RewindConfig = RewindConfig()
     heading: HeadingConfig = HeadingConfig()

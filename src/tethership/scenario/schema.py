@@ -57,7 +57,11 @@ WindConfig = Annotated[UniformWindConfig | PowerLawWindConfig, Field(discriminat
 
 
 class GustConfig(Table):
-    """A 1 − cos pulse; its peak is a `fraction` of the wind, or a `speed`."""
+    """A gust whose peak is a `fraction` of the wind, or a `speed`.
+
+    `shape` is one pulse ½A(1 − cos), those pulses `repeated` to the end, or one period of a bare `cosine`, which
+    begins and ends with a jump.
+    """
 
     fraction: Annotated[float, Quantity("1", low=0.0)] | None = None
     speed: Speed | None = None
@@ -65,6 +69,7 @@ class GustConfig(Table):
     upward_angle: Angle = 0.0
     start: Annotated[float, Quantity("s", low=0.0)]
     period: Seconds
+    shape: Literal["one_minus_cosine", "repeated", "cosine"] = "one_minus_cosine"
 
     @model_validator(mode="after")
     def _one_amplitude(self) -> "GustConfig":
@@ -98,7 +103,10 @@ class WinchConfig(Table):
 
 
 class CableConfig(Table):
-    """One cable; `tether_point` from the origin of the body axes, `anchor` in ground axes."""
+    """One cable; `tether_point` from the origin of the body axes, `anchor` in ground axes.
+
+    `load_reference` is where the airspeed of the cable's wind load is taken: a fraction of the span from the anchor.
+    """
 
     name: str
     tether_point: Point
@@ -112,6 +120,7 @@ class CableConfig(Table):
     joint_end: Annotated[float, Quantity("1", positive=True)]
     cross_flow_drag_coefficient: Annotated[float, Quantity("1", low=0.0)]
     longitudinal_drag_coefficient: Annotated[float, Quantity("1", low=0.0)]
+    load_reference: Annotated[float, Quantity("1", low=0.0, high=1.0)] = 0.5
     winch: WinchConfig
 
     @model_validator(mode="after")

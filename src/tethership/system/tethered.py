@@ -54,6 +54,9 @@ class Cable(eqx.Module):
         Tension from span, length and load.
     winch : Winch
         Its drive at the anchor.
+    load_reference : float
+        Where the reference point C of the cable's wind load sits, as a fraction of the span from the anchor [-]; ½ is
+        the mid-point.
     """
 
     tether_point: Float[Array, "3"]
@@ -63,6 +66,7 @@ class Cable(eqx.Module):
     load: CableLoad
     law: AbstractTensionLaw
     winch: Winch
+    load_reference: Float[Array, ""]
 
     def state(
         self, time: Float[Array, ""], state: State, length: Float[Array, ""], environment: Environment
@@ -78,13 +82,13 @@ class Cable(eqx.Module):
         length : Float[Array, ""]
             Present unstretched length L_t [m].
         environment : Environment
-            Wind and density at the cable's mid-point, the reference point C of Eqs. 15–18; C moves at half the
-            velocity of TP, the anchor being at rest.
+            Wind and density at the reference point C of Eqs. 15–18; on the chord between the ends C moves at its
+            fraction of the velocity of TP, the anchor being at rest.
         """
         rotation = rotation_matrix(state.attitude)
         span = state.position + rotation @ self.tether_point - self.anchor
         velocity = rotation @ (state.velocity + jnp.cross(state.rates, self.tether_point))
-        wind = environment.wind_at(self.anchor + 0.5 * span, time)
+        wind = environment.wind_at(self.anchor + self.load_reference * span, time)
         return self.between(span, velocity, length, wind, environment)
 
     def between(
@@ -106,12 +110,12 @@ class Cable(eqx.Module):
         length : Float[Array, ""]
             L_t [m].
         wind : Float[Array, "3"]
-            Wind at the mid-point [m/s].
+            Wind at C [m/s].
         environment : Environment
             Gives the density there.
         """
-        density = environment.density_at(self.anchor + 0.5 * span)
-        load = self.load.per_length(density, 0.5 * velocity - wind, span)
+        density = environment.density_at(self.anchor + self.load_reference * span)
+        load = self.load.per_length(density, self.load_reference * velocity - wind, span)
         force = self.law.force(span, length, load)
         return CableState(span, force.ship, force.anchor, load)
 
@@ -232,12 +236,12 @@ def cable_between(
     velocity : Float[Array, "3"]
         Ground velocity of the ship's end [m/s].
     wind : Float[Array, "3"], optional
-        Wind at the mid-point [m/s]; the environment's at time zero if not given.
+        Wind at the reference point C [m/s]; the environment's at time zero if not given.
     """
     moved = eqx.tree_at(lambda c: c.anchor, cable, anchor)
     span = end - anchor
     if wind is None:
-        wind = environment.wind_at(anchor + 0.5 * span, jnp.zeros(()))
+        wind = environment.wind_at(anchor + cable.load_reference * span, jnp.zeros(()))
     state = moved.between(span, velocity, jnp.asarray(length), wind, environment)
     regime = cable.law.regime(safe_norm(span) / length)
     lowest = moved.lowest_point(state, jnp.asarray(length))

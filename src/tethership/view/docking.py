@@ -24,7 +24,7 @@ POINTS = ["N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "W
 """Points of the compass, clockwise."""
 
 
-def plot_docking(flight: Flight, figure: Figure | None = None) -> Figure:
+def plot_docking(flight: Flight, figure: Figure | None = None, title: str | None = None) -> Figure:
     """Draw a docking flight as the four panels of Fig. 12 of Riboldi et al.
 
     Seen from north (top left; east is on the left), from east (top right; north is on the right) and from the top
@@ -39,6 +39,8 @@ def plot_docking(flight: Flight, figure: Figure | None = None) -> Figure:
         From `dock` or `Flight.load`; any number of cables.
     figure : Figure, optional
         Draw into this figure, which is cleared, instead of into a new one of 10.8 by 8.6 inches.
+    title : str, optional
+        Above the panels, instead of the scenario's own title.
 
     Returns
     -------
@@ -59,7 +61,7 @@ def plot_docking(flight: Flight, figure: Figure | None = None) -> Figure:
     draw_view(east, snapshots, FROM_EAST)
     draw_view(top, snapshots, FROM_TOP)
     draw_histories(histories, snapshots)
-    _title(figure, snapshots)
+    _title(figure, snapshots, title)
     _legend(figure, snapshots)
     return figure
 
@@ -82,8 +84,8 @@ def _layout(figure: Figure) -> tuple[Axes, Axes, Axes, tuple[Axes, Axes, Axes]]:
     return north, east, top, (lengths, tensions, rates)
 
 
-def _title(figure: Figure, snapshots: Snapshots) -> None:
-    """Write the scenario's title and, below it, how it was flown and how it ended."""
+def _title(figure: Figure, snapshots: Snapshots, title: str | None) -> None:
+    """Write the title, the scenario's if none is given, and, below it, how it was flown and how it ended."""
     attributes, config = snapshots.flight.attributes, snapshots.config
     wind = config.wind
     layers = ", ".join(attributes["layers"]) or "none"
@@ -94,7 +96,8 @@ def _title(figure: Figure, snapshots: Snapshots) -> None:
         f"{attributes['formulation']} formulation",
         f"{attributes['outcome'].replace('_', ' ')} after {snapshots.time[-1]:.1f} s",
     ]
-    figure.text(LEFT, 0.972, config.title, fontsize=style.FONT + 4, weight="bold", color=style.INK, va="center")
+    words = config.title if title is None else title
+    figure.text(LEFT, 0.972, words, fontsize=style.FONT + 4, weight="bold", color=style.INK, va="center")
     figure.text(LEFT, 0.944, "  ·  ".join(parts), fontsize=style.FONT, color=style.INK, va="center")
 
 

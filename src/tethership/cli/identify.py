@@ -1,0 +1,123 @@
+"""`tethership identify`: fit the paper's unpublished parameters to its tables."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from tethership.cli.common import (
+    FormulationOption,
+    JsonOption,
+    OutOption,
+    ScenarioArgument,
+    SetOption,
+    chosen_scenario,
+    print_json,
+    table,
+    writable_folder,
+)
+from tethership.cli.progress import progress_bar
+from tethership.errors import ConfigError
+
+EXAMPLE = "Example: tethership identify --formulation published --out fit"
+
+
+def identify(
+    scenario: ScenarioArgument = "docking_paper",
+    formulation: FormulationOption = None,
+    seed: Annotated[int, typer.Option(min=0, help="Of everything random; the same seed gives the same answer.")] = 1,
+    generations: Annotated[
+        int, typer.Option(min=1, max=1000, help="Of the differential evolution; fewer is quicker and coarser.")
+    ] = 60,
+    population: Annotated[int, typer.Option(min=8, max=1000, help="Vectors of a generation.")] = 96,
+    power: Annotated[int, typer.Option(min=5, max=16, help="2^power Sobol points come first.")] = 11,
+    left_out: Annotated[
+        int, typer.Option("--left-out", min=0, max=1000, help="Generations of each fit without one table; 0 for none.")
+    ] = 24,
+    changes: SetOption = None,
+    out: OutOption = Path("out"),
+    json: JsonOption = False,
+) -> None:
+    """Fit what the paper does not publish (fins, hull drag, thrust) to its Tables 3-6 at 6 and 12 m/s.
+
+    Global search, least squares, the set of all that fits nearly as well, and a fit without each table. Takes 10 to 30
+    minutes with the defaults. Writes identified_FORMULATION.json and the vehicle lotte_identified_FORMULATION.toml.
+    """
+    from tethership.fitting.fit_file import fit_document, fit_text
+    from tethership.fitting.identify import Budget
+    from tethership.fitting.identify import identify as fit
+
+    loaded = chosen_scenario(scenario, None, formulation, changes)
+    _check(loaded)
+    if 2**power < population:
+        raise ConfigError(f"2^{power} Sobol points are fewer than the population of {population}; raise --power")
+    writable_folder(out)
+    budget = Budget(power, population, generations, max(generations // 2, 2), left_out)
+    with progress_bar("identify") as report:
+        found = fit(loaded, budget, seed, lambda what, share, least: report(f"{what}, misfit {least:.3f}", share))
+    document = fit_document(found, loaded.name, seed, budget)
+    fit_file = out / f"identified_{loaded.formulation}.json"
+    vehicle_file = out / f"lotte_identified_{loaded.formulation}.toml"
+    fit_file.write_text(fit_text(document), encoding="utf-8")
+    vehicle_file.write_text(vehicle_of(document), encoding="utf-8")
+    document["files"] = [str(fit_file), str(vehicle_file)]
+    if json:
+        print_json(document)
+    else:
+        _print(document)
+
+
+def _check(scenario: Any) -> None:
+    """Raise ConfigError where a scenario is not the paper's docking."""
+    from tethership.fitting.space import THRUSTERS
+
+    names = [thruster.name for thruster in scenario.config.vehicle.thrusters]
+    if names != list(THRUSTERS) or len(scenario.config.cables) != 1 or len(scenario.config.vehicle.fins) != 4:
+        raise ConfigError(
+            f"{scenario.name} is not the ship of the paper (thrusters {', '.join(THRUSTERS)}, four fins, one cable): its "
+            "tables can only be fitted with that; start from docking_paper"
+        )
+
+
+def vehicle_of(document: dict[str, Any]) -> str:
+    """Return the vehicle file of a fit."""
+    import numpy as np
+
+    from tethership.fitting.vehicle_file import vehicle_text
+    from tethership.scenario.load import packaged_text
+
+    name = f"lotte_identified_{document['formulation']}"
+    return vehicle_text(
+        packaged_text("vehicles", "lotte"),
+        np.array(list(document["parameters"].values())),
+        name,
+        f"Lotte with its unpublished numbers identified from the paper's tables, formulation {document['formulation']}",
+        f"identified, tethership identify, Tables 3-6 at 6 and 12 m/s, {document['formulation']}",
+    )
+
+
+def _print(document: dict[str, Any]) -> None:
+    """Print parameters, spread and misfits."""
+    rows = [
+        (name, f"{value:.4g}", f"{document['units'][name]}  [{low:.4g} … {high:.4g}]{_flag(name, document)}")
+        for (name, value), (low, _, high) in zip(
+            document["parameters"].items(), document["spread"].values(), strict=True
+        )
+    ]
+    table(rows, f"formulation {document['formulation']}: best vector, and 5-95 % of all within 10 % of its misfit")
+    rows = [
+        ("misfit, all", f"{document['misfit']:.3f}", ""),
+        ("misfit, tables", f"{document['tables_misfit']:.3f}", ""),
+        *[(f"misfit of {name} left out", f"{value:.3f}", "") for name, value in document["left_out_misfit"].items()],
+        ("vectors looked at", str(document["vectors"]), ""),
+    ]
+    table(rows, "quality (0 is agreement; 0.83 is 20 % off in every number)")
+    if document["spectrum_unmet"]:
+        typer.echo(f"The best vector's free ship does not have: {', '.join(document['spectrum_unmet'])}")
+    for path in document["files"]:
+        typer.echo(f"wrote {path}")
+
+
+def _flag(name: str, document: dict[str, Any]) -> str:
+    """Return a remark on a number that ran into a bound."""
+    return "  at a bound" if name in document["at_bound"] else ""

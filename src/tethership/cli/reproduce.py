@@ -1,0 +1,184 @@
+"""`tethership reproduce`: the whole study of the paper, published beside computed, as one report."""
+
+import platform
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tethership._version import __version__
+from tethership.cli.common import JsonOption, json_text, print_json, writable_folder
+from tethership.cli.progress import progress_bar
+from tethership.errors import ConfigError, suggestion
+
+if TYPE_CHECKING:
+    from tethership.reproduction.jobs import Job
+
+EXAMPLE = "Example: tethership reproduce --only table3,figure12 --out reproduction"
+
+ITEMS: dict[str, tuple[str, ...]] = {
+    **{f"table{number}": ("tables",) for number in range(3, 7)},
+    **{f"figure{number}": ("linear_pictures",) for number in range(6, 12)},
+    **{f"figure{number}": ("docking_pictures",) for number in range(12, 16)},
+    **{f"L{number}": ("linear",) for number in range(1, 10)},
+    **{f"D{number}": ("tables",) for number in range(1, 12)},
+    "claims": ("linear", "tables"),
+    "identification": ("fit_pictures",),
+    "variants": ("variants",),
+    "cable": ("cable", "line_pictures"),
+    "terms": ("terms", "docking_pictures"),
+    "uncertainty": ("uncertainty",),
+    "retuned": ("retuned",),
+}
+"""What --only may name, and the jobs that make it."""
+
+
+def reproduce(
+    only: Annotated[
+        str | None,
+        typer.Option(help="Parts, by commas: table3 … table6, figure6 … figure15, L1 … L9, D1 … D11, claims, …"),
+    ] = None,
+    formulation: Annotated[
+        str | None, typer.Option(help="published or consistent. Default: that of docking_paper, which fits better.")
+    ] = None,
+    flights: Annotated[int, typer.Option(min=8, max=100_000, help="Perturbed flights of each row.")] = 200,
+    seed: Annotated[int, typer.Option(min=0, help="Of perturbations.")] = 1,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Compute everything again.")] = False,
+    out: Annotated[Path, typer.Option(help="Folder for the report and all that is in it.")] = Path("reproduction"),
+    json: JsonOption = False,
+) -> None:
+    """Compute Tables 3-6, Figures 6-15 and every claim of the paper, from the stored fits, and write a report.
+
+    Writes report.html (one page, opens without a network), tables.json and all figures (PNG and interactive) into
+    --out. A second run takes what is unchanged from there.
+    """
+    from tethership.reproduction.jobs import Settings, load_part, run_jobs
+    from tethership.view.study_report import write_study
+
+    jobs = _chosen(only)
+    settings = Settings(_formulation(formulation), flights=flights, seed=seed)
+    writable_folder(out)
+    begun = time.perf_counter()
+    _forget_others(out, jobs)
+    with progress_bar("reproduce") as report:
+        anew = run_jobs(jobs, out, settings, report, fresh)
+        report("report", 1.0)
+        path = write_study(out, settings, _footer(settings))
+    result: dict[str, Any] = {"formulation": settings.formulation, "tables": {}, "claims": {}}
+    for name in ("tables", "linear"):
+        if name in jobs:
+            part = load_part(out, name)
+            result["tables"] |= part.get("tables", {})
+            result["claims"] |= part["claims"]
+    for name in ("variants", "uncertainty", "cable", "terms", "retuned"):
+        if name in jobs:
+            result[name] = load_part(out, name)
+    result["counts"] = _counts(result)
+    (out / "tables.json").write_text(json_text(result), encoding="utf-8")
+    result["files"] = [str(path), str(out / "tables.json")]
+    result["computed_anew"] = [name for name, again in anew.items() if again]
+    result["seconds"] = round(time.perf_counter() - begun, 1)
+    if json:
+        print_json(result)
+    else:
+        _print(result)
+
+
+def _formulation(given: str | None) -> str:
+    """Return the formulation, the packaged scenario's own if none is given."""
+    from tethership.fitting.fit_file import FORMULATIONS
+    from tethership.scenario import load_scenario
+
+    if given is None:
+        return load_scenario("docking_paper").formulation
+    if given not in FORMULATIONS:
+        raise ConfigError(f"--formulation {given!r}{suggestion(given, FORMULATIONS)} Allowed: {', '.join(FORMULATIONS)}")
+    return given
+
+
+def _jobs() -> dict[str, "Job"]:
+    """Return all parts of the study, in the order in which two processes do them fastest."""
+    from tethership.reproduction import study
+    from tethership.reproduction.jobs import Job
+    from tethership.view import study_pictures as pictures
+
+    return {
+        "flights": Job(study.fly_part, (), "flights"),
+        "linear": Job(study.linear_part, (), "claims L1-L9"),
+        "tables": Job(study.table_part, ("flights",), "tables and claims D1-D11"),
+        "terms": Job(study.term_part, ("flights",), "terms"),
+        "linear_pictures": Job(pictures.linear_pictures, (), "figures 6-11"),
+        "variants": Job(study.variant_part, (), "variants"),
+        "uncertainty": Job(study.uncertainty_part, (), "uncertainty"),
+        "retuned": Job(study.retuned_part, (), "retuned gains"),
+        "cable": Job(study.cable_part, ("flights",), "dynamic cable"),
+        "docking_pictures": Job(pictures.docking_pictures, ("flights",), "figures 12-15"),
+        "fit_pictures": Job(pictures.fit_pictures, (), "identification"),
+        "line_pictures": Job(pictures.line_pictures, ("cable",), "dynamic cable, pictures"),
+    }
+
+
+def _chosen(only: str | None) -> dict[str, "Job"]:
+    """Return the jobs that make what was asked for, and what they need."""
+    jobs = _jobs()
+    if only is None:
+        return jobs
+    wanted: list[str] = []
+    for item in (text.strip() for text in only.split(",")):
+        if item not in ITEMS:
+            raise ConfigError(f"--only has no part {item!r}{suggestion(item, ITEMS)} Allowed: {', '.join(ITEMS)}")
+        wanted += ITEMS[item]
+    while missing := {need for name in wanted for need in jobs[name].needs} - set(wanted):
+        wanted += sorted(missing)
+    return {name: job for name, job in jobs.items() if name in wanted}
+
+
+def _forget_others(out: Path, jobs: dict[str, "Job"]) -> None:
+    """Take parts out of the folder that were not asked for: a report shows what belongs to it."""
+    from tethership.reproduction.jobs import part_file
+
+    for name in _jobs():
+        if name not in jobs:
+            part_file(out, name).unlink(missing_ok=True)
+
+
+def _counts(result: dict[str, Any]) -> dict[str, int]:
+    """Return how many claims hold and numbers agree."""
+    from tethership.reproduction.tables import counts
+
+    rows = [row for table in result["tables"].values() for row in table]
+    holds = sum(claim["holds"] for claim in result["claims"].values())
+    return {"holds": holds, "does_not_hold": len(result["claims"]) - holds, **counts(rows)}
+
+
+def _footer(settings: Any) -> dict[str, Any]:
+    """Return versions and provenance."""
+    import jax
+
+    return {
+        "tethership": __version__,
+        "formulation": settings.formulation,
+        "perturbed flights": settings.flights,
+        "seed": settings.seed,
+        "jax": jax.__version__,
+        "python": platform.python_version(),
+        "written": time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime()),
+    }
+
+
+def _print(result: dict[str, Any]) -> None:
+    """Print verdicts in short."""
+    number = result["counts"]
+    typer.echo(f"formulation {result['formulation']}")
+    if result["tables"]:
+        typer.echo(
+            f"  tables   {number['agrees']} agree, {number['near']} near, {number['differs']} differ, "
+            f"{number['prediction']} predictions"
+        )
+    for name, claim in result["claims"].items():
+        met = sum(claim["parts"].values())
+        verdict = "holds" if claim["holds"] else f"does not hold ({met} of {len(claim['parts'])} parts do)"
+        typer.echo(f"  {name:<4} {verdict}")
+    for path in result["files"]:
+        typer.echo(f"wrote {path}")

@@ -1,0 +1,119 @@
+"""`tethership tune`: gains of the four layers, over many perturbed flights and under constraints."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from tethership.cli.common import (
+    NO_ANSWER,
+    FormulationOption,
+    JsonOption,
+    OutOption,
+    ScenarioArgument,
+    SetOption,
+    chosen_scenario,
+    print_json,
+    table,
+    writable_folder,
+)
+from tethership.cli.progress import progress_bar
+from tethership.errors import ConfigError
+
+EXAMPLE = "Example: tethership tune docking_paper --wind 12 --out tuned"
+
+
+def tune(
+    scenario: ScenarioArgument = "docking_paper",
+    wind: Annotated[float, typer.Option("--wind", metavar="M_PER_S", help="Wind to tune for [m/s].")] = 12.0,
+    formulation: FormulationOption = None,
+    flights: Annotated[int, typer.Option(min=8, max=10_000, help="Perturbed flights that judge the result.")] = 200,
+    searched: Annotated[int, typer.Option(min=4, help="How many of them the search looks at.")] = 24,
+    population: Annotated[int, typer.Option(min=8, max=1000, help="Sets of gains of a generation.")] = 32,
+    generations: Annotated[int, typer.Option(min=1, max=1000, help="Of the differential evolution.")] = 40,
+    seed: Annotated[int, typer.Option(min=0, help="Of everything random.")] = 1,
+    changes: SetOption = None,
+    out: OutOption = Path("out"),
+    json: JsonOption = False,
+) -> None:
+    """Tune the gains of SAS, rewind, heading and navigation for one wind.
+
+    Constraints, over flights with the start's attitude +-2 deg, the gust +-1 s and the wind +-3 %: no throttle
+    saturates, the tension stays below the envelope's tear force, docking within 1.1 times the shortest time. Writes
+    tuning.json and, for packaged scenarios, NAME_retuned.toml.
+    """
+    from tethership.fitting.tune import tune as search
+    from tethership.fitting.tune import tuning_document
+
+    if searched > flights:
+        raise ConfigError(f"--searched {searched} is more than the {flights} flights there are; lower it")
+    loaded = chosen_scenario(scenario, wind, formulation, changes)
+    writable_folder(out)
+    with progress_bar("tune") as report:
+        found = search(
+            loaded,
+            flights,
+            searched,
+            population,
+            generations,
+            seed,
+            lambda what, share, least: report(f"{what}, cost {least:.3f}", share),
+        )
+    document = tuning_document(found, loaded, seed, flights)
+    document["files"] = _written(document, scenario, changes, out)
+    if json:
+        print_json(document)
+    else:
+        _print(document)
+    if found.after.undocked >= 1.0:
+        raise typer.Exit(NO_ANSWER)
+
+
+def _written(document: dict[str, Any], name: str, changes: list[str] | None, out: Path) -> list[str]:
+    """Write the tuning and its scenario; returns the files."""
+    import json as json_module
+
+    from tethership.fitting.scenario_file import retuned_text
+    from tethership.scenario.load import packaged_text
+
+    path = out / "tuning.json"
+    path.write_text(json_module.dumps(document, indent=1), encoding="utf-8")
+    files = [str(path)]
+    if not name.endswith(".toml") and not changes:
+        text = retuned_text(
+            packaged_text("scenarios", name),
+            document["parameters"],
+            document["wind"],
+            f"Docking, gains retuned for {document['wind']:g} m/s",
+            f"tuned, tethership tune, {document['wind']:g} m/s",
+        )
+        stem = name.removesuffix("_paper")
+        retuned = out / f"{stem}_retuned.toml"
+        retuned.write_text(text, encoding="utf-8")
+        files.append(str(retuned))
+    return files
+
+
+def _print(document: dict[str, Any]) -> None:
+    """Print gains and what they do."""
+    rows = [(name, f"{value:.4g}", f"was {document['former'][name]:.4g}") for name, value in document["parameters"].items()]
+    table(rows, f"gains for {document['wind']:g} m/s, formulation {document['formulation']}")
+    words = {
+        "saturated": ("flights with a saturated throttle", 100.0, "%"),
+        "torn": ("flights above the tear force", 100.0, "%"),
+        "late": ("flights that dock too late", 100.0, "%"),
+        "undocked": ("flights that do not dock", 100.0, "%"),
+        "peak_mean": ("mean peak tension", 1.0, "N"),
+        "peak_high": ("95th percentile of the peak", 1.0, "N"),
+        "duty": ("mean ADC", 1.0, "1/s"),
+        "effort": ("mean E", 1.0, ""),
+        "pitch": ("mean pitch, root mean square", 1.0, "deg"),
+        "time": ("mean flight time", 1.0, "s"),
+    }
+    rows = [
+        (text, f"{factor * document['after'][key]:.4g}", f"{unit}  (before {factor * document['before'][key]:.4g})")
+        for key, (text, factor, unit) in words.items()
+    ]
+    table(rows, f"over {document['flights']} perturbed flights")
+    for path in document["files"]:
+        typer.echo(f"wrote {path}")

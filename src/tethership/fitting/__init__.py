@@ -1,0 +1,1 @@
+"""Fits: the paper's unpublished parameters, and control gains."""

@@ -1,0 +1,102 @@
+"""How far each table cell moves over perturbed flights with the identified set sampled. Depends on: campaign, fitting.
+
+200 flights per row: initial attitude ±2°, gust ±1 s, wind ±3 %, and the ship one of those that fit nearly as well.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from tethership.campaign import Cases, fly_cases, layer_switches, perturbed
+from tethership.fitting.space import named_values
+from tethership.fitting.targets import TABLES
+from tethership.reproduction.tables import THRESHOLDS, published_numbers
+from tethership.scenario import Scenario
+from tethership.simulation.batch import CODES
+
+FLIGHTS = 200
+"""Perturbed flights of each row."""
+
+LOW, HIGH = 5.0, 95.0
+"""Percentiles of the interval."""
+
+
+def uncertainty(
+    scenario: Scenario,
+    members: np.ndarray,
+    winds: tuple[float, ...],
+    flights: int = FLIGHTS,
+    seed: int = 1,
+    perturb: bool = True,
+) -> list[dict[str, Any]]:
+    """Return the interval of each table cell.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        The paper's docking.
+    members : ndarray
+        Identified set [SI], shape (members, unknowns).
+    winds : tuple of float
+        [m/s].
+    flights : int
+        Per row.
+    seed : int
+        Of perturbations and of the draw from the set.
+    perturb : bool
+        False to sample the identified set alone, as the interval of a prediction.
+
+    Returns
+    -------
+    list of dict
+        layers, wind, metric, low, median, high, published, inside (None without a published number), broken (share of
+        flights that broke the cable).
+    """
+    drawn = members[np.random.default_rng(seed).integers(0, len(members), flights)]
+    blocks, keys, names = [], [], ()
+    for table, layers in TABLES.items():
+        for wind in winds:
+            here = scenario.changed({"wind.speed": wind})
+            columns: dict[str, Any] = {**named_values(drawn), "wind.speed": np.full(flights, wind)}
+            if perturb:
+                columns |= perturbed(here, flights, seed)
+            columns |= {name: np.full(flights, value) for name, value in layer_switches(scenario, layers).items()}
+            cases = Cases((), np.zeros((flights, 0))).with_columns(columns)
+            blocks.append(cases.values)
+            keys.append((table, wind))
+            names = cases.names
+    flown = fly_cases(scenario, Cases(names, np.concatenate(blocks)))
+    rows = []
+    for i, (table, wind) in enumerate(keys):
+        part = {name: value[i * flights : (i + 1) * flights] for name, value in flown.items()}
+        rows += _cells(table, wind, part)
+    return rows
+
+
+def _cells(table: str, wind: float, flown: dict[str, np.ndarray]) -> list[dict[str, Any]]:
+    """Return the cells of one row."""
+    published = published_numbers().get((table, wind), {})
+    names = ("tension_max", "tension_mean", "rewind_rate_min", "docking_time", "ADC", "E", "theta_rms")
+    values = {name: flown[name] for name in names}
+    values |= {f"seconds_above {limit}": flown["seconds_above"][:, i] for i, limit in enumerate(THRESHOLDS)}
+    broken = float(np.mean(flown["outcome"] == [code.name for code in CODES].index("cable_broken")))
+    rows = []
+    for name, value in values.items():
+        finite = value[np.isfinite(value)]
+        low, middle, high = np.percentile(finite, [LOW, 50.0, HIGH]) if len(finite) else (None, None, None)
+        given = published.get(name)
+        inside = None if given is None or low is None else bool(low - 1e-9 <= given <= high + 1e-9)
+        rows.append(
+            {
+                "layers": table,
+                "wind": wind,
+                "metric": name,
+                "low": None if low is None else float(low),
+                "median": None if middle is None else float(middle),
+                "high": None if high is None else float(high),
+                "published": given,
+                "inside": inside,
+                "broken": broken,
+            }
+        )
+    return rows

@@ -1,0 +1,255 @@
+"""The study's report: sections in words, tables and figures, from the parts that were computed.
+
+Depends on: view.report, view.study_tables, reproduction.
+"""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import plotly.io
+
+from tethership.fitting.fit_file import stored_fit
+from tethership.reproduction.jobs import Settings, load_part, part_file
+from tethership.reproduction.linear_figures import FIGURES
+from tethership.reproduction.misprints import MISPRINTS
+from tethership.reproduction.tables import counts
+from tethership.view import study_tables as tables
+from tethership.view.report import Figure, Section, write_report
+from tethership.view.study_pictures import DOCKING_FIGURES, LAYER_WORDS
+
+PAPER = (
+    "Riboldi, Croce, Pagani, He, Bortolini, Airship dynamics in a tethered docking maneuver"
+)
+
+
+class _Study:
+    """What was computed, part by part, and the pictures of it."""
+
+    def __init__(self, folder: Path, settings: Settings) -> None:
+        self.folder, self.settings = folder, settings
+        self.fit = stored_fit(settings.formulation)
+
+    def part(self, name: str) -> dict[str, Any] | None:
+        """Return a part's result, None where it was not asked for."""
+        return load_part(self.folder, name) if part_file(self.folder, name).exists() else None
+
+    def figure(self, name: str, caption: str, plot: str | None = None, label: str = "") -> list[Figure]:
+        """Return a picture with its plot, nothing where it was not drawn."""
+        png = self.folder / "figures" / f"{name}.png"
+        if not png.exists():
+            return []
+        data = self.folder / "figures" / f"{plot or name}.json"
+        drawn = plotly.io.from_json(data.read_text(encoding="utf-8"), skip_invalid=True) if data.exists() else None
+        return [Figure(caption, png, drawn, caption, label)]
+
+
+def write_study(folder: Path, settings: Settings, footer: Mapping[str, Any]) -> Path:
+    """Write report.html from the parts that are in a folder; returns where.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the study.
+    settings : Settings
+        What it is of.
+    footer : mapping
+        Versions and provenance.
+    """
+    study = _Study(folder, settings)
+    makers = (
+        _tables, _identification, _linear, _docking, _variants, _line, _terms, _uncertainty, _retuning, _misprints
+    )  # fmt: skip
+    sections = [section for maker in makers if (section := maker(study)) is not None]
+    title = "An airship docking with a rewinding tether: the paper, reproduced and tested"
+    return write_report(folder / "report.html", title, _abstract(study), sections, footer)
+
+
+def _abstract(study: _Study) -> list[str]:
+    """Return the summary."""
+    form = study.settings.formulation
+    lines = [
+        f"Section by section, the study of {PAPER} is computed again and set beside its print, in the formulation "
+        f"`{form}`, with a ship whose unpublished numbers were identified from the tables at 6 and 12 m/s. Every number "
+        "below was computed in the run that wrote this page; what was fitted, what is predicted and what does not "
+        "hold is said where it stands."
+    ]
+    table = study.part("tables")
+    if table is not None:
+        total = {word: 0 for word in ("agrees", "near", "differs", "prediction")}
+        for rows in table["tables"].values():
+            for word, number in counts(rows).items():
+                total[word] += number
+        claims = {**table["claims"], **((study.part("linear") or {}).get("claims") or {})}
+        held = [name for name, claim in claims.items() if claim["holds"]]
+        lines.append(
+            f"Of the published numbers in Tables 3–6, **{total['agrees']}** agree within 20 % (times of docking within "
+            f"2 %), **{total['near']}** are near (a factor 1.5) and **{total['differs']}** differ; {total['prediction']} "
+            f"numbers at 9 m/s are predictions. Of {len(claims)} claims **{len(held)}** hold in every part"
+            + (f": {', '.join(held)}." if held else ".")
+        )
+    return lines
+
+
+def _intervals(study: _Study) -> dict[tuple[str, float, str], dict[str, Any]]:
+    part = study.part("uncertainty")
+    rows: Sequence[dict[str, Any]] = [] if part is None else part["set_alone"]
+    return {(row["layers"], row["wind"], row["metric"]): row for row in rows}
+
+
+def _tables(study: _Study) -> Section | None:
+    part = study.part("tables")
+    if part is None:
+        return None
+    intervals = _intervals(study)
+    drawn = [tables.comparison(name, rows, intervals) for name, rows in part["tables"].items()]
+    words = [
+        "The docking starts at rest from the trim with 10° added to roll, pitch and yaw about the tether point, in a "
+        "uniform wind from the north with a gust from the west at 20 s, and ends at 1.5 m of cable. A number **agrees** "
+        "within 20 % (docking times within 2 %), is **near** within a factor 1.5 (4 %), else **differs**."
+    ]
+    return Section("Tables 3–6", words, drawn)
+
+
+def _identification(study: _Study) -> Section:
+    fit = study.fit
+    unmet = fit["spectrum_unmet"]
+    words = [
+        "Fins, drag coefficients of the hull and nominal thrusts are not published. They were searched inside the bounds "
+        "of [[parameters]] for the least misfit to the rows at 6 and 12 m/s and to claims L1 and L2 of the spectrum: "
+        f"{fit['vectors']} vectors by Sobol points, differential evolution and least squares. Times over a threshold "
+        "have a wide tolerance, and every tolerance is widened by how far its number moves when the initial attitude "
+        "moves by 1 %.",
+        f"The best vector has a misfit of **{fit['misfit']:.3f}** with the spectrum and {fit['tables_misfit']:.3f} to the "
+        "tables alone. It is one of a set: what fits within 10 % of it spreads as [[marginals]] shows, and only "
+        "combinations of numbers are well determined ([[correlation]]).",
+        (
+            "Identified numbers at a bound of their range: " + ", ".join(n.replace("_", " ") for n in fit["at_bound"]) + "."
+            if fit["at_bound"]
+            else "No identified number is at a bound of its range."
+        ),
+        (
+            f"The tables and the spectra pull apart: with the identified ship, of L1 and L2 it does not hold that "
+            f"{', '.join(unmet)}."
+            if unmet
+            else "The identified ship has the free spectrum that L1 and L2 describe."
+        ),
+    ]
+    shown = [tables.parameter_table(fit)]
+    if (left := tables.left_out_table(fit)) is not None:
+        words.append(
+            "Fits that never saw one of the tables say of it what [[left_out]] has: a misfit well above that of what was "
+            "fitted means that the table carries information the others do not."
+        )
+        shown.append(left)
+    figures = [
+        *study.figure("fit_marginals", "Marginal ranges of the identified numbers.", label="marginals"),
+        *study.figure("fit_correlation", "Correlation of the identified numbers over the set.", label="correlation"),
+        *study.figure("fit_residuals", "Computed over published, every fitted number."),
+    ]
+    if not figures:
+        words[1] = words[1].replace(" as [[marginals]] shows", "").replace(" ([[correlation]])", "")
+    return Section("Identification of what is not published", words, shown, figures)
+
+
+def _linear(study: _Study) -> Section | None:
+    part = study.part("linear")
+    figures = []
+    for number, (title, _) in FIGURES.items():
+        figures += study.figure(f"figure_{number:02d}", f"Figure {number} of the paper, computed: {title}.")
+    if part is None and not figures:
+        return None
+    words = [
+        "Root loci of the identified ship about its trim, by exact differentiation; every mode keeps its name along a "
+        "locus. A claim holds only if each of its parts does."
+    ]
+    shown = [] if part is None else [tables.claims_table(part["claims"], "Claims L1–L9 of section 3.", "linear_claims")]
+    return Section("Free response: Figures 6–11, claims L1–L9", words, shown, figures)
+
+
+def _docking(study: _Study) -> Section | None:
+    part = study.part("tables")
+    figures = []
+    for number, table in DOCKING_FIGURES.items():
+        caption = f"Figure {number} of the paper, computed: {LAYER_WORDS[table]}, 12 m/s, gust of 4 m/s at 20 s."
+        figures += study.figure(f"figure_{number}", caption)
+        histories = study.folder / "figures" / f"figure_{number}_histories.json"
+        if histories.exists():
+            drawn = plotly.io.from_json(histories.read_text(encoding="utf-8"), skip_invalid=True)
+            figures.append(Figure(f"Histories of the flight of Figure {number}.", None, drawn))
+    figures += study.figure("figure_15", "Figure 15 of the paper, computed: the three trajectories.")
+    if part is None and not figures:
+        return None
+    words = ["The docking under the three control logics, and what the text of section 4 says of it."]
+    shown = [] if part is None else [tables.claims_table(part["claims"], "Claims D1–D11 of section 4.", "docking_claims")]
+    return Section("Docking: Figures 12–15, claims D1–D11", words, shown, figures)
+
+
+def _variants(study: _Study) -> Section | None:
+    part = study.part("variants")
+    if part is None:
+        return None
+    other = "consistent" if study.settings.formulation == "published" else "published"
+    words = [
+        "The print leaves readings open. Each was flown with the identified ship as it is, and with a ship fitted anew "
+        "from the identified set ([[variants]]).",
+        f"Formulation: fitted by the same search, `{study.settings.formulation}` reaches a misfit of "
+        f"{study.fit['misfit']:.3f} and `{other}` {stored_fit(other)['misfit']:.3f}.",
+    ]
+    return Section("What the print leaves open", words, [tables.variant_table(part, study.fit["tables_misfit"])])
+
+
+def _line(study: _Study) -> Section | None:
+    part = study.part("cable")
+    if part is None:
+        return None
+    if not part["cases"]:
+        return Section("The quasi-static cable", [part["message"]])
+    figures = []
+    for name, case in part["cases"].items():
+        figures += study.figure(f"line_{name}", f"Tension at the tether point: {case['title']}.")
+    return Section("The quasi-static cable", part["words"], [tables.line_table(part["cases"])], figures)
+
+
+def _terms(study: _Study) -> Section | None:
+    part = study.part("terms")
+    if part is None:
+        return None
+    shown = [tables.breakdown_table(part["breakdown"])]
+    shown += [tables.terms_table(rows, layers) for layers, rows in part["switched_off"].items()]
+    figures = []
+    for layers in part["breakdown"]:
+        figures += study.figure(f"loads_{layers}", f"Loads over the flight: {LAYER_WORDS[layers]}, 12 m/s.")
+    words = ["How large each load is over a flight, and what becomes of the peak tension when a term is taken out."]
+    return Section("Which terms matter", words, shown, figures)
+
+
+def _uncertainty(study: _Study) -> Section | None:
+    part = study.part("uncertainty")
+    if part is None:
+        return None
+    rows = [row for row in part["perturbed"] if row["inside"] is not None]
+    inside = sum(row["inside"] for row in rows)
+    words = [
+        f"Each row was flown {study.settings.flights} times with the initial attitude moved by up to 2°, the gust by up to "
+        "1 s, the wind by up to 3 %, and the ship drawn from the identified set.",
+        f"Of {len(rows)} published numbers **{inside}** lie inside the 5–95 % range.",
+    ]
+    return Section("Uncertainty", words, [tables.uncertainty_table(part["perturbed"], wind) for wind in (6.0, 9.0, 12.0)])
+
+
+def _retuning(study: _Study) -> Section | None:
+    part = study.part("retuned")
+    if part is None:
+        return None
+    words = [
+        "The paper remarks that its gains might be tuned for 12 m/s and leaves that undone. `tethership tune` searched the "
+        f"gains of all four layers over perturbed flights; both were flown again {part['flights']} times here.",
+        part["words"],
+    ]
+    return Section("Gains retuned for 12 m/s", words, [tables.retuned_table(part["rows"])])
+
+
+def _misprints(study: _Study) -> Section:
+    words = ["Found by deriving every equation again."]
+    return Section("Misprints", words, [tables.misprint_table(MISPRINTS)])
