@@ -76,7 +76,7 @@ def test_time_limit_and_divergence_are_told(docking):
 
 def test_wrong_names_are_refused(docking):
     """A parameter that does not exist, and the same number twice."""
-    with pytest.raises(ts.ConfigError, match="has no number 'wind.sped'"):
+    with pytest.raises(ts.ConfigError, match=r"has no number 'wind\.sped'"):
         fly_cases(docking, Cases(("wind.sped",), np.array([[6.0]])))
     with pytest.raises(ts.ConfigError, match="same number"):
         fly_cases(docking, Cases(("wind.speed", "wind"), np.array([[6.0, 7.0]])))

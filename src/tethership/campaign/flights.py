@@ -71,9 +71,7 @@ class Cases(NamedTuple):
 def layer_switches(scenario: Scenario, layers: Sequence[str]) -> dict[str, float]:
     """Return the gains that make a scenario's law act with these layers only, the others being zero."""
     known = list_parameters(scenario.config)
-    return {
-        name: known[name].value if layer in layers else 0.0 for layer, names in SWITCHES.items() for name in names
-    }
+    return {name: known[name].value if layer in layers else 0.0 for layer, names in SWITCHES.items() for name in names}
 
 
 @eqx.filter_jit

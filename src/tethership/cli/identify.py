@@ -34,6 +34,9 @@ def identify(
     left_out: Annotated[
         int, typer.Option("--left-out", min=0, max=1000, help="Generations of each fit without one table; 0 for none.")
     ] = 24,
+    variants: Annotated[
+        bool, typer.Option("--variants", help="Then fit every reading that the print leaves open (10 minutes more).")
+    ] = False,
     changes: SetOption = None,
     out: OutOption = Path("out"),
     json: JsonOption = False,
@@ -56,6 +59,11 @@ def identify(
     with progress_bar("identify") as report:
         found = fit(loaded, budget, seed, lambda what, share, least: report(f"{what}, misfit {least:.3f}", share))
     document = fit_document(found, loaded.name, seed, budget)
+    if variants:
+        from tethership.fitting.variants import refit_all
+
+        with progress_bar("variants") as report:
+            document["variants"] = refit_all(loaded, document, report)
     fit_file = out / f"identified_{loaded.formulation}.json"
     vehicle_file = out / f"lotte_identified_{loaded.formulation}.toml"
     fit_file.write_text(fit_text(document), encoding="utf-8")
@@ -74,8 +82,8 @@ def _check(scenario: Any) -> None:
     names = [thruster.name for thruster in scenario.config.vehicle.thrusters]
     if names != list(THRUSTERS) or len(scenario.config.cables) != 1 or len(scenario.config.vehicle.fins) != 4:
         raise ConfigError(
-            f"{scenario.name} is not the ship of the paper (thrusters {', '.join(THRUSTERS)}, four fins, one cable): its "
-            "tables can only be fitted with that; start from docking_paper"
+            f"{scenario.name} is not the ship of the paper (thrusters {', '.join(THRUSTERS)}, four fins, one cable); "
+            "its tables can only be fitted with that: start from docking_paper"
         )
 
 
@@ -91,7 +99,7 @@ def vehicle_of(document: dict[str, Any]) -> str:
         packaged_text("vehicles", "lotte"),
         np.array(list(document["parameters"].values())),
         name,
-        f"Lotte with its unpublished numbers identified from the paper's tables, formulation {document['formulation']}",
+        f"Lotte, unpublished numbers identified from the paper's tables, formulation {document['formulation']}",
         f"identified, tethership identify, Tables 3-6 at 6 and 12 m/s, {document['formulation']}",
     )
 

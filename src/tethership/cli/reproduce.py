@@ -93,7 +93,9 @@ def _formulation(given: str | None) -> str:
     if given is None:
         return load_scenario("docking_paper").formulation
     if given not in FORMULATIONS:
-        raise ConfigError(f"--formulation {given!r}{suggestion(given, FORMULATIONS)} Allowed: {', '.join(FORMULATIONS)}")
+        raise ConfigError(
+            f"--formulation {given!r}{suggestion(given, FORMULATIONS)} Allowed: {', '.join(FORMULATIONS)}"
+        )
     return given
 
 

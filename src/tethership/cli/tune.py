@@ -96,7 +96,9 @@ def _written(document: dict[str, Any], name: str, changes: list[str] | None, out
 
 def _print(document: dict[str, Any]) -> None:
     """Print gains and what they do."""
-    rows = [(name, f"{value:.4g}", f"was {document['former'][name]:.4g}") for name, value in document["parameters"].items()]
+    rows = [
+        (name, f"{value:.4g}", f"was {document['former'][name]:.4g}") for name, value in document["parameters"].items()
+    ]
     table(rows, f"gains for {document['wind']:g} m/s, formulation {document['formulation']}")
     words = {
         "saturated": ("flights with a saturated throttle", 100.0, "%"),

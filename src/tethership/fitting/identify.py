@@ -236,9 +236,7 @@ def _without(
     """
     kept = np.array([item.table != table for item in whole.what] + [True] * 4)
     rows = [row for row in whole.rows if row.table != table]
-    partial = Objective(
-        whole.scenario, rows, [item for item in whole.what if item.table != table], whole.spectrum
-    )
+    partial = Objective(whole.scenario, rows, [item for item in whole.what if item.table != table], whole.spectrum)
     archive = _searched(partial, known[0], known[1][:, kept], budget, budget.left_out, seed, report)
     best = archive.best()[0]
     everything = whole(best[None])[0]

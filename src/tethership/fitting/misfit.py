@@ -1,8 +1,9 @@
-"""How far flights are from the paper's tables, as one number. Depends on: campaign, fitting.targets, numpy.
+"""How far flights are from the paper's tables, as residuals of each number.
 
-For each published number the residual is ln(computed/published)/tolerance, so that a factor counts the same up and
-down; the misfit (`search.misfit`) is the mean of 2(√(1 + r²) − 1), which is r² near agreement and grows linearly far
-from it: one hopeless number does not rule the fit. Times over a threshold, which may be zero, are compared as ln((t + ½ s)/…).
+Depends on: campaign, simulation, scenario, fitting.targets. For each published number the residual is
+ln(computed/published)/tolerance, so that a factor counts the same up and down; the misfit (`search.misfit`) is the mean
+of 2(√(1 + r²) − 1), which is r² near agreement and grows linearly far from it: one hopeless number does not rule the
+fit. Times over a threshold, which may be zero, are compared as ln((t + ½ s)/…).
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,7 +19,14 @@ from tethership.scenario import Scenario
 from tethership.simulation import Outcome
 from tethership.simulation.batch import CODES
 
-TOLERANCES = {"tension_max": 0.18, "tension_mean": 0.18, "E": 0.18, "ADC": 0.18, "theta_rms": 0.18, "seconds_above": 0.5}
+TOLERANCES = {
+    "tension_max": 0.18,
+    "tension_mean": 0.18,
+    "E": 0.18,
+    "ADC": 0.18,
+    "theta_rms": 0.18,
+    "seconds_above": 0.5,
+}
 """Tolerance of each metric's logarithm [-]: 0.18 is 20 %, within which a verdict is *agrees*; a time over a threshold
 hangs on few snaps of the cable and is given 65 %."""
 
@@ -67,9 +75,7 @@ def items(rows: Sequence[Row] | None = None) -> tuple[Item, ...]:
         for metric, tolerance in TOLERANCES.items():
             value = row.values[metric]
             if isinstance(value, list):
-                found += [
-                    Item(row.table, row.wind, f"{metric}.{i}", float(value[i]), tolerance) for i in range(TIMED)
-                ]
+                found += [Item(row.table, row.wind, f"{metric}.{i}", float(value[i]), tolerance) for i in range(TIMED)]
             else:
                 found.append(Item(row.table, row.wind, metric, float(value), tolerance))
     return tuple(found)
@@ -145,4 +151,3 @@ def residuals(flown: Sequence[dict[str, np.ndarray]], rows: Sequence[Row], what:
         whole = np.isin(metrics["outcome"], WHOLE) & np.isfinite(residual)
         columns.append(np.where(whole, residual, FAILED))
     return np.stack(columns, axis=-1)
-

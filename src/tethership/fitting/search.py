@@ -80,7 +80,7 @@ def evolve(archive: Archive, population: np.ndarray, generations: int, seed: int
     scipy.optimize.differential_evolution(
         lambda x: misfit(archive(np.atleast_2d(x.T))),
         [(0.0, 1.0)] * population.shape[1],
-        init=population,
+        init=population,  # pyright: ignore[reportArgumentType]
         maxiter=generations,
         tol=0.0,
         mutation=(0.4, 0.9),

@@ -4,13 +4,13 @@ Claims L1 and L2 (free ship, 6 m/s): side-slip and vertical are real and mildly 
 stable. The tables of section 4 and the spectra of section 3 are of one ship: a fit has to weigh both.
 """
 
+import itertools
 from collections.abc import Callable, Mapping, Sequence
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-import scipy.linalg
 from jaxtyping import Array, Float
 
 from tethership.analysis.continuation import nearby_equilibrium
@@ -74,12 +74,12 @@ def _residuals(config: ScenarioConfig, places: tuple, question: Question, values
     return jax.vmap(lambda value: _hinged(_growths(config, places, question, value)))(values)
 
 
-def _eigenvalue_slope(matrix: np.ndarray, slopes: np.ndarray, choose: Callable[[np.ndarray], int]) -> np.ndarray:
+def _eigenvalue_slope(matrix: np.ndarray, slopes: np.ndarray, choose: Callable[[np.ndarray], np.intp]) -> np.ndarray:
     """Return d Re λ/dp of one eigenvalue of a block for dA/dp of shape (parameters, n, n): wᴴ dA v / wᴴ v."""
-    values, left, right = scipy.linalg.eig(matrix, left=True, right=True)
+    values, right = np.linalg.eig(matrix)
     which = choose(values)
-    w, v = left[:, which].conj(), right[:, which]
-    return np.real(np.einsum("i,kij,j->k", w, slopes, v) / (w @ v))
+    w, v = np.linalg.inv(right)[which], right[:, which]  # rows of the inverse are left eigenvectors with w v = 1
+    return np.real(np.einsum("i,kij,j->k", w, slopes, v))
 
 
 class Spectrum:
@@ -127,15 +127,15 @@ class Spectrum:
         slopes, _, _ = matrix_slopes(scenario, point, parameters, np.full(len(parameters), 1e-2))
         lateral = (matrix[np.ix_(LATERAL, LATERAL)], slopes[:, LATERAL[:, None], LATERAL])
         longitudinal = (matrix[np.ix_(LONGITUDINAL, LONGITUDINAL)], slopes[:, LONGITUDINAL[:, None], LONGITUDINAL])
-        slip = _eigenvalue_slope(*lateral, lambda v: int(np.argmax(v.real)))
-        vertical = _eigenvalue_slope(*longitudinal, lambda v: int(np.argmin(np.abs(v))))
-        pendulum = _eigenvalue_slope(*longitudinal, lambda v: int(np.argmax(v.imag)))
-        roll = _eigenvalue_slope(*lateral, lambda v: int(np.argmax(v.imag)))
+        slip = _eigenvalue_slope(*lateral, lambda v: np.argmax(v.real))
+        vertical = _eigenvalue_slope(*longitudinal, lambda v: np.argmin(np.abs(v)))
+        pendulum = _eigenvalue_slope(*longitudinal, lambda v: np.argmax(v.imag))
+        roll = _eigenvalue_slope(*lateral, lambda v: np.argmax(v.imag))
         growing = 1.0 if np.max(np.linalg.eigvals(longitudinal[0]).real) > 0 else -1.0
         each = np.stack([-slip, -vertical, growing * pendulum, roll]) / GROWTH
         each = np.where(self.residuals(values[None])[0][:, None] > 0, each, 0.0)
         starts = np.cumsum([0, *(len(unknown.parameters) for unknown in UNKNOWNS)])
-        return np.stack([each[:, a:b].sum(axis=1) for a, b in zip(starts[:-1], starts[1:], strict=True)], axis=-1)
+        return np.stack([each[:, a:b].sum(axis=1) for a, b in itertools.pairwise(starts)], axis=-1)
 
 
 def unmet(residual: Sequence[float]) -> list[str]:

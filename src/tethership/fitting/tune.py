@@ -1,8 +1,9 @@
-"""Tuning of the control laws' gains over many perturbed flights, under constraints. Depends on: campaign, fitting.search.
+"""Tuning of the control laws' gains over many perturbed flights, under constraints.
 
-What is asked of a set of gains, over all perturbed flights: no throttle saturates, the tension stays below the tear
-force, the ship docks within 1.1 times the shortest time. Among gains that keep all of it, those with the lowest peak
-tension are looked for, with a little weight on the control's travel; while none does, what is violated is made less.
+Depends on: campaign, scenario, fitting.search. What is asked of a set of gains, over all perturbed flights: no throttle
+saturates, the tension stays below the tear force, the ship docks within 1.1 times the shortest time. Among gains that
+keep all of it, those with the lowest peak tension are looked for, with a little weight on the control's travel and on
+pitch; while none does, what is violated is made less.
 """
 
 import time
@@ -39,6 +40,9 @@ LONGEST = 1.1
 
 TRAVEL_WEIGHT = 0.05
 """Weight of ADC [s] beside the mean peak over the tear force."""
+
+PITCH_WEIGHT = 0.02
+"""Weight of θ_rms [1/deg] beside the mean peak over the tear force: 5° count as a tenth of it."""
 
 INFEASIBLE = 10.0
 """Added to the cost of gains that violate anything, so that they are worse than any that violates nothing."""
@@ -142,7 +146,7 @@ def _judged(flown: dict[str, np.ndarray], tear: float, longest: float) -> Judgem
         + np.mean(np.maximum(span / longest - 1.0, 0.0))
         + 10.0 * np.mean(~docked)
     )
-    wish = np.mean(peak) / tear + TRAVEL_WEIGHT * np.mean(flown["ADC"])
+    wish = np.mean(peak) / tear + TRAVEL_WEIGHT * np.mean(flown["ADC"]) + PITCH_WEIGHT * np.mean(flown["theta_rms"])
     finite = np.isfinite(violation) and np.isfinite(wish)
     cost = (INFEASIBLE + violation if violation > 0 else wish) if finite else 1e6
     return Judgement(
@@ -232,7 +236,9 @@ def _own_gains(scenario: Scenario) -> np.ndarray:
     """Return the scenario's own gains [SI], or say why they cannot be tuned."""
     missing = {"rewind", "heading", "navigation"} - set(scenario.layers)
     if missing or not scenario.config.control.sas:
-        raise ConfigError(f"tuning needs all layers; {scenario.name} lacks {', '.join(sorted(missing)) or 'SAS/attitude'}")
+        raise ConfigError(
+            f"tuning needs all layers; {scenario.name} lacks {', '.join(sorted(missing)) or 'SAS/attitude'}"
+        )
     known = list_parameters(scenario.config)
     own = np.array([known[name].value for name in GAINS])
     if np.any(own <= 0):

@@ -43,6 +43,9 @@ def _thruster_share(law: str, share: str, **values: float) -> dict[str, float]:
     return {f"control.{law}.{share}.{thruster}": value for thruster, value in values.items()}
 
 
+AS_IDENTIFIED = Variant("as identified", "", {})
+"""No variant: what the others, fitted anew by the same short search, are held against."""
+
 VARIANTS = (
     Variant("threshold 144.3 N", "F′ of Eq. 41: Table A.2 or the text's third", {"control.rewind.threshold": 144.3}),
     Variant("χ from atan2", "Eq. 42: χ over the full circle", {"control.heading.angle": "full"}),
@@ -70,6 +73,21 @@ Progress = Callable[[str, float], None]
 """Called with the variant's name and the share of all that is done."""
 
 
+def refit_all(scenario: Scenario, fit: dict[str, Any], progress: Progress | None = None) -> dict[str, dict[str, Any]]:
+    """Return the vector fitted to every variant, and to none, as plain data by the variant's name."""
+    found: dict[str, dict[str, Any]] = {}
+    everything = (AS_IDENTIFIED, *VARIANTS)
+    for done, variant in enumerate(everything):
+        if progress is not None:
+            progress(variant.name, done / len(everything))
+        values = refit(scenario, fit, variant)
+        found[variant.name] = {
+            "values": [float(f"{value:.6g}") for value in values],
+            "misfit": float(table_misfits(scenario, fit, variant, values)[0]),
+        }
+    return found
+
+
 def fitted_items(fit: dict[str, Any]) -> tuple[Item, ...]:
     """Return what a stored fit fitted, with its tolerances."""
     tolerance = {(entry["table"], entry["wind"], entry["metric"]): entry["tolerance"] for entry in fit["items"]}
@@ -86,7 +104,7 @@ def refit(
     fit: dict[str, Any],
     variant: Variant,
     population: int = 32,
-    generations: int = 10,
+    generations: int = 8,
     seed: int = 1,
 ) -> np.ndarray:
     """Return the best vector [SI] of a variant, searched from the identified set.
@@ -114,7 +132,7 @@ def refit(
 
 
 def table_misfits(scenario: Scenario, fit: dict[str, Any], variant: Variant | None, values: np.ndarray) -> np.ndarray:
-    """Return the misfits to the tables of vectors [SI], in the tolerances of a stored fit, with or without a variant."""
+    """Return the misfits to the tables of vectors [SI], in the tolerances of a fit, with or without a variant."""
     here = scenario if variant is None else scenario.changed(variant.changes)
     rows = published_rows()
     return misfit(residuals(fly_rows(here, np.atleast_2d(values), rows), rows, fitted_items(fit)))

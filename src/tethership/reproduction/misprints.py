@@ -30,7 +30,7 @@ MISPRINTS = (
         "Table 2",
         "k1, k2, k3, k′ in kg, Jᵃ in kg m²",
         "factors without unit, and a squared radius of gyration in m²",
-        "Lamb's formulas give the printed k1, k2; ρ𝒱 then makes masses of the right size (tests/validation/test_lamb.py)",
+        "Lamb's formulas give the printed k1, k2; ρ𝒱 then makes masses of the right size",
     ),
     Misprint("Eq. 11, Eq. 25", "moment without its cross", "q × T, q × F", "a force makes no moment without its arm"),
     Misprint("Eq. 17 and 18", "a sign rule and a modulus", "one signed cos α", "the same force, without a case"),

@@ -1,8 +1,8 @@
-"""Tables 3–6 of the paper: published beside computed, with ratio and verdict. Depends on: fitting.targets, simulation,
-reproduction.flights_read.
+"""Tables 3–6 of the paper: published beside computed, with ratio and verdict.
 
-A verdict is *agrees* within 20 % (times of docking within 2 %), *near* within a factor 1.5 (4 %), else *differs*. The
-rows at 9 m/s have no published number here: they are predictions.
+Depends on: fitting.targets, simulation, reproduction.flights_read. A verdict is *agrees* within 20 % (times of docking
+within 2 %), *near* within a factor 1.5 (4 %), else *differs*. The rows at 9 m/s have no published number here: they
+are predictions.
 """
 
 from collections.abc import Mapping, Sequence

@@ -83,17 +83,17 @@ def _cells(table: str, wind: float, flown: dict[str, np.ndarray]) -> list[dict[s
     rows = []
     for name, value in values.items():
         finite = value[np.isfinite(value)]
-        low, middle, high = np.percentile(finite, [LOW, 50.0, HIGH]) if len(finite) else (None, None, None)
         given = published.get(name)
-        inside = None if given is None or low is None else bool(low - 1e-9 <= given <= high + 1e-9)
+        low, middle, high = map(float, np.percentile(finite, [LOW, 50.0, HIGH])) if len(finite) else (np.nan,) * 3
+        inside = None if given is None or not len(finite) else bool(low - 1e-9 <= given <= high + 1e-9)
         rows.append(
             {
                 "layers": table,
                 "wind": wind,
                 "metric": name,
-                "low": None if low is None else float(low),
-                "median": None if middle is None else float(middle),
-                "high": None if high is None else float(high),
+                "low": low,
+                "median": middle,
+                "high": high,
                 "published": given,
                 "inside": inside,
                 "broken": broken,

@@ -55,7 +55,7 @@ class RewindConfig(Table):
 class HeadingConfig(Table):
     """Table A.3 of the paper.
 
-    `fade_radius` 0 never fades, `measured_behind` moves the point from which χ is measured aft, and `angle` says whether
+    `fade_radius` 0 never fades, `measured_behind` moves the point from which χ is measured aft; `angle` says whether
     the law acts on χ itself (`full`), on arcsin sin χ (`sine`) or on the angle to the line, either way round (`line`).
     """
 

@@ -19,7 +19,6 @@ from tethership.control import (
 from tethership.scenario.control_schema import Share, Table
 from tethership.scenario.schema import ScenarioConfig
 
-
 HEADING = {"full": HeadingLaw, "sine": SineHeadingLaw, "line": LineHeadingLaw}
 """Heading laws by the angle that a file names."""
 

@@ -114,9 +114,7 @@ def _stepped(
     return jax.tree.map(lambda new, old: jnp.where(moving, new, old), ahead, kept)
 
 
-def _started(
-    loop: ClosedLoop, stop: StopConditions, limits: Float[Array, "limits"], vector: Float[Array, "n"]
-) -> Lane:
+def _started(loop: ClosedLoop, stop: StopConditions, limits: Float[Array, "limits"], vector: Float[Array, "n"]) -> Lane:
     """Return a lane at t = 0; one that is over before it begins ends there."""
     slope, margins, now = _look(loop, stop, jnp.zeros(()), vector)
     finite = jnp.all(jnp.isfinite(vector)) & jnp.all(jnp.isfinite(slope))

@@ -81,7 +81,10 @@ def plot_residuals(fit: dict[str, Any]) -> Figure:
     axes.set_yscale("log")
     axes.set_yticks([0.5, 0.7, 1.0, 1.4, 2.0], ["0.5", "0.7", "1", "1.4", "2"])
     axes.minorticks_off()
-    labels = [_words(metric).replace("seconds above.0", "time > 144 N").replace("seconds above.1", "time > 481 N") for metric in metrics]
+    labels = [
+        _words(metric).replace("seconds above.0", "time > 144 N").replace("seconds above.1", "time > 481 N")
+        for metric in metrics
+    ]
     axes.set_xticks(range(len(metrics)), labels, fontsize=style.FONT)
     axes.set_ylabel("computed / published", fontsize=style.FONT)
     axes.legend(fontsize=style.FONT - 2, ncols=3, loc="best")

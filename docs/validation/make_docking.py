@@ -1,0 +1,96 @@
+"""Write docs/validation/docking.md and its figures from a run of `tethership reproduce`.
+
+Run: make validation. Takes tables.json and figures of the study's folder; every number on the page is of that run.
+"""
+
+import json
+import shutil
+import sys
+from pathlib import Path
+from typing import Any
+
+from tethership.reproduction.misprints import MISPRINTS
+
+HERE = Path(__file__).parent
+SHOWN = ("figure_12", "figure_13", "figure_14", "figure_15", "fit_marginals", "fit_residuals")
+
+
+def number(value: Any) -> str:
+    """Return a number of a table, a dash for none."""
+    return "–" if value is None else f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def table(heads: list[str], rows: list[list[Any]]) -> str:
+    """Return a Markdown table."""
+    lines = ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)]
+    return "\n".join([*lines, *("| " + " | ".join(map(number, row)) + " |" for row in rows)])
+
+
+def tables(study: dict[str, Any]) -> str:
+    """Return Tables 3–6."""
+    intervals = {(r["layers"], r["wind"], r["metric"]): r for r in study["uncertainty"]["set_alone"]}
+    parts = []
+    for name, rows in study["tables"].items():
+        cells = []
+        for row in rows:
+            of = intervals[row["layers"], row["wind"], row["metric"]]
+            span = f"{number(of['low'])} … {number(of['high'])}"
+            what = row["metric"] if name != "table6" else f"{row['metric']}, {row['layers']}"
+            cells.append([what, row["wind"], row["published"], row["computed"], row["ratio"], span, row["verdict"]])
+        heads = ["quantity", "wind [m/s]", "published", "computed", "ratio", "5–95 % of the set", "verdict"]
+        parts.append(f"### Table {name[5:]}\n\n{table(heads, cells)}")
+    return "\n\n".join(parts)
+
+
+def claims(study: dict[str, Any]) -> str:
+    """Return all claims with their parts."""
+    rows = []
+    for name, claim in study["claims"].items():
+        rows.append([f"**{name}** {claim['statement']}", "**holds**" if claim["holds"] else "no"])
+        rows += [[part, "✓" if good else "·"] for part, good in claim["parts"].items()]
+    return table(["claim", ""], rows)
+
+
+def variants(study: dict[str, Any]) -> str:
+    """Return the misfit of every reading."""
+    rows = [[r["name"], r["question"], r["misfit"], r["refitted"]] for r in study["variants"]["variants"]]
+    return table(["reading", "what the print leaves open", "misfit, same ship", "fitted anew"], rows)
+
+
+def lines(study: dict[str, Any]) -> str:
+    """Return the quasi-static cable beside the dynamic line."""
+    keys = ("title", "peak_quasi_static", "peak_dynamic", "peak_ratio", "rms_difference", "snaps_matched", "outside")
+    rows = [[case[key] for key in keys] for case in study["cable"]["cases"].values()]
+    heads = ["flight", "peak, static [N]", "peak, dynamic [N]", "ratio", "rms [N]", "snaps matched", "share outside"]
+    return table(heads, rows) + "\n\n" + "\n\n".join(study["cable"]["words"])
+
+
+def misprints() -> str:
+    """Return the misprints."""
+    rows = [[m.where, m.printed, m.meant, m.evidence] for m in MISPRINTS]
+    return table(["where", "printed", "meant", "settled by"], rows)
+
+
+def main(folder: Path) -> None:
+    """Write the page."""
+    study = json.loads((folder / "tables.json").read_text(encoding="utf-8"))
+    text = (HERE / "docking.in.md").read_text(encoding="utf-8")
+    fills = {
+        "formulation": study["formulation"],
+        "counts": ", ".join(f"{value} {key.replace('_', ' ')}" for key, value in study["counts"].items()),
+        "tables": tables(study),
+        "claims": claims(study),
+        "variants": variants(study),
+        "lines": lines(study),
+        "misprints": misprints(),
+        "figures": "\n\n".join(f"![{name}](docking_{name}.png)" for name in SHOWN),
+    }
+    for key, value in fills.items():
+        text = text.replace("{{" + key + "}}", value)
+    for name in SHOWN:
+        shutil.copy(folder / "figures" / f"{name}.png", HERE / f"docking_{name}.png")
+    (HERE / "docking.md").write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1] if len(sys.argv) > 1 else "reproduction"))
