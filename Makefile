@@ -23,6 +23,7 @@ bench: $(VENV)/.installed-dev
 	$(BIN)/python benchmarks/cable.py
 	$(BIN)/python benchmarks/docking.py
 	$(BIN)/python benchmarks/linear.py
+	$(BIN)/python benchmarks/batch.py
 
 figures: $(VENV)/.installed
 	$(BIN)/tethership dock --wind 12 --layers rewind,heading --out out/readme
@@ -32,6 +33,8 @@ figures: $(VENV)/.installed
 
 validation: $(VENV)/.installed
 	$(BIN)/python docs/validation/make_linear.py
+	$(BIN)/tethership reproduce --out out/reproduction
+	$(BIN)/python docs/validation/make_docking.py out/reproduction
 
 $(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -39,7 +42,7 @@ $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)
 
 $(VENV)/.installed: $(VENV)/bin/python pyproject.toml
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e .
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[reproduce]"
 	@touch $@
 
 $(VENV)/.installed-dev: $(VENV)/bin/python pyproject.toml

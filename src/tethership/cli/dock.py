@@ -77,6 +77,8 @@ def dock(
         print_json(result)
     else:
         _print(result, flight)
+    if result["cable_warning"]:
+        typer.echo(f"tethership: warning: {result['cable_warning']}", err=True)
     if not flight.outcome.is_answer:
         raise typer.Exit(NO_ANSWER)
 
@@ -162,6 +164,8 @@ def _drawn(flight: "Flight", out: Path) -> list[str]:
 
 def summary(scenario: Scenario, flight: "Flight") -> dict[str, Any]:
     """Return the keys that scripts may rely on, SI, θ_rms in degrees."""
+    from tethership.simulation.quasi_static import quasi_static_warning
+
     return {
         "outcome": flight.outcome.name,
         "message": flight.outcome.value,
@@ -174,6 +178,7 @@ def summary(scenario: Scenario, flight: "Flight") -> dict[str, Any]:
         "formulation": scenario.formulation,
         "limits": flight.attributes["limits"],
         "steps": flight.attributes["steps"],
+        "cable_warning": quasi_static_warning(flight),
     }
 
 

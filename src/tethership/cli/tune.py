@@ -102,6 +102,7 @@ def _print(document: dict[str, Any]) -> None:
     table(rows, f"gains for {document['wind']:g} m/s, formulation {document['formulation']}")
     words = {
         "saturated": ("flights with a saturated throttle", 100.0, "%"),
+        "saturated_seconds": ("mean time saturated", 1.0, "s"),
         "torn": ("flights above the tear force", 100.0, "%"),
         "late": ("flights that dock too late", 100.0, "%"),
         "undocked": ("flights that do not dock", 100.0, "%"),

@@ -65,6 +65,8 @@ class Judgement(NamedTuple):
         Mean and 95th percentile of the peak tension [N].
     duty, effort, pitch : float
         Means of ADC [1/s], E [-], θ_rms [deg].
+    saturated_seconds : float
+        Mean time with a throttle saturated [s].
     time : float
         Mean flight time [s].
     """
@@ -79,6 +81,7 @@ class Judgement(NamedTuple):
     duty: float
     effort: float
     pitch: float
+    saturated_seconds: float
     time: float
 
 
@@ -160,6 +163,7 @@ def _judged(flown: dict[str, np.ndarray], tear: float, longest: float) -> Judgem
         float(np.mean(flown["ADC"])),
         float(np.mean(flown["E"])),
         float(np.mean(flown["theta_rms"])),
+        float(np.mean(flown["saturated_seconds"])),
         float(np.mean(span)),
     )
 

@@ -1,4 +1,6 @@
-"""One cable as a dynamic line of MoorDyn 2, in air, with a driven end and a winch. Depends on: spatial, errors, MoorDyn.
+"""One cable as a dynamic line of MoorDyn 2, in air, with a driven end and a winch.
+
+Depends on: spatial, errors, MoorDyn.
 
 MoorDyn (NREL, C++; optional) lumps the mass of a line at the nodes between its segments, each a spring and a damper
 that cannot push. Nothing of it is shared with `physics.cable`. What its input asks for, and how it is met:
@@ -181,9 +183,7 @@ class MoorDynLine:
         MoorDyn refuses the line or does not know an option.
     """
 
-    def __init__(
-        self, properties: LineProperties, end: Vector, length: float, segments: int, time_step: float
-    ) -> None:
+    def __init__(self, properties: LineProperties, end: Vector, length: float, segments: int, time_step: float) -> None:
         self._moordyn = load_moordyn()
         self._folder = tempfile.TemporaryDirectory(prefix="tethership-moordyn-")
         self._log = Path(self._folder.name) / "printed.txt"
@@ -194,13 +194,12 @@ class MoorDynLine:
         self._segments = segments
         self.wind(np.zeros(3))
 
-    def _begin(
-        self, properties: LineProperties, end: Vector, length: float, segments: int, time_step: float
-    ) -> None:
+    def _begin(self, properties: LineProperties, end: Vector, length: float, segments: int, time_step: float) -> None:
         """Write the input, read it in and let the line hang in still air."""
         x, y, z = (float(value) for value in self._point(end))
-        numbers = dict(x=x, y=y, z=z, length=length, segments=segments, time_step=time_step, anchor=-DEPTH)
-        constants = dict(gravity=STANDARD_GRAVITY, bottom=2.0 * DEPTH)
+        given = {"x": x, "y": y, "z": z, "length": length, "time_step": time_step, "anchor": -DEPTH}
+        numbers = {name: float(value) for name, value in given.items()}  # a numpy number is written as np.float64(…)
+        constants = {"segments": segments, "gravity": STANDARD_GRAVITY, "bottom": 2.0 * DEPTH}
         path = Path(self._folder.name) / "line.txt"
         path.write_text(_INPUT.format(**numbers, **constants, **properties._asdict()), encoding="utf-8")
         try:

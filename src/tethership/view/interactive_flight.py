@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tethership.simulation import Flight
 from tethership.spatial import rotation_matrix
 from tethership.view import style
-from tethership.view.hull_mesh import Mesh, ship_mesh
+from tethership.view.hull_mesh import ship_mesh
 from tethership.view.interactive_histories import interactive_histories
 from tethership.view.sampling import evenly, listed
 from tethership.view.snapshots import Snapshots, take_snapshots
@@ -28,7 +28,13 @@ FRAME_INTERVAL = 1.0
 LIGHT = {"ambient": 0.6, "diffuse": 0.6, "specular": 0.1, "roughness": 0.8}
 """How the hull is lit."""
 
-EYE = {"x": 1.05, "y": 0.75, "z": 0.55}
+LAMP = {"x": 1e5, "y": 5e4, "z": 1e5}
+"""Where the light stands."""
+
+HULL = "#DCDCDC"
+"""The ship that moves: light grey."""
+
+EYE = {"x": 1.5, "y": 1.0, "z": 0.65}
 """Whence the scene is seen at first: from east-northeast, above."""
 
 
@@ -59,11 +65,11 @@ def interactive_flight(flight: Flight, title: str | None = None) -> go.Figure:
     ship = _Ship(snapshots, shown)
     ends = [ship.at(0, style.START, 0.3, "start"), ship.at(-1, style.END, 0.3, "end")]
     still = [_path(snapshots), *ends, *_ghosts(snapshots), *_anchors(snapshots), _ground(snapshots)]
-    moving = [ship.at(0, style.BETWEEN, 1.0, "ship"), *_cables(snapshots, int(shown[0]))]
+    moving = [ship.at(0, HULL, 1.0, "ship"), *_cables(snapshots, int(shown[0]))]
     figure = go.Figure([*moving, *still])
     figure.frames = [
         go.Frame(
-            name=_name(snapshots, int(index)),
+            name=str(index),
             data=[ship.corners(place), *({"type": "scatter3d", **_space(curve)} for curve in snapshots.curves[index])],
             traces=list(range(len(moving))),
             layout={"annotations": [_readout(snapshots, int(index))]},
@@ -72,11 +78,6 @@ def interactive_flight(flight: Flight, title: str | None = None) -> go.Figure:
     ]
     _dress(figure, snapshots, snapshots.config.title if title is None else title, shown)
     return figure
-
-
-def _name(snapshots: Snapshots, index: int) -> str:
-    """Return the name of a frame: its time [s]."""
-    return f"{snapshots.time[index]:.4g}"
 
 
 def _space(points: Array) -> dict[str, list[float | None]]:
@@ -100,7 +101,7 @@ class _Ship:
     def at(self, place: int, colour: str, opacity: float, name: str) -> go.Mesh3d:
         """Return it at one of the samples."""
         i, j, k = self.mesh.faces.T.tolist()
-        looks = {"color": colour, "opacity": opacity, "flatshading": True, "lighting": LIGHT}
+        looks = {"color": colour, "opacity": opacity, "flatshading": False, "lighting": LIGHT, "lightposition": LAMP}
         return go.Mesh3d(self.corners(place) | looks, i=i, j=j, k=k, name=name, showlegend=True, hoverinfo="skip")
 
 
@@ -192,7 +193,7 @@ def _readout(snapshots: Snapshots, index: int) -> dict[str, Any]:
 
 def _dress(figure: go.Figure, snapshots: Snapshots, title: str, shown: NDArray[np.intp]) -> None:
     """Set scene, title, legend, slider and buttons."""
-    names = [_name(snapshots, int(i)) for i in shown]
+    times = listed(snapshots.time[shown])
     at_once = {"mode": "immediate", "frame": {"duration": 0, "redraw": True}, "transition": {"duration": 0}}
     play = {**at_once, "frame": {"duration": 120, "redraw": True}, "fromcurrent": True}
     axis = {"gridcolor": style.GUIDE, "showbackground": False, "zeroline": False}
@@ -201,23 +202,26 @@ def _dress(figure: go.Figure, snapshots: Snapshots, title: str, shown: NDArray[n
         template="plotly_white",
         height=640,
         margin={"l": 10, "r": 10, "t": 50, "b": 10},
-        legend={"orientation": "h", "y": 0.0, "yanchor": "top", "x": 0.0},
+        legend={"x": 1.0, "y": 1.0, "xanchor": "right", "font": {"size": 11}, "bgcolor": "rgba(255,255,255,0.8)"},
         annotations=[_readout(snapshots, int(shown[0]))],
         scene={
             "aspectmode": "data",
-            "camera": {"eye": EYE, "projection": {"type": "orthographic"}},
+            "camera": {"eye": EYE, "center": {"x": 0.0, "y": 0.0, "z": -0.08}},
             "xaxis": {"title": "east [m]", **axis},
             "yaxis": {"title": "north [m]", **axis},
             "zaxis": {"title": "altitude [m]", **axis},
         },
         sliders=[
             {
-                "steps": [{"label": name, "method": "animate", "args": [[name], at_once]} for name in names],
-                "currentvalue": {"prefix": "time ", "suffix": " s"},
-                "x": 0.16,
-                "len": 0.84,
-                "y": -0.06,
-                "pad": {"t": 20},
+                "steps": [
+                    {"label": f"{time:g}", "method": "animate", "args": [[str(index)], at_once]}
+                    for time, index in zip(times, shown, strict=True)
+                ],
+                "currentvalue": {"prefix": "time ", "suffix": " s", "xanchor": "right"},
+                "x": 0.02,
+                "len": 0.96,
+                "y": 0.0,
+                "pad": {"t": 25},
             }
         ],
         updatemenus=[
@@ -227,9 +231,9 @@ def _dress(figure: go.Figure, snapshots: Snapshots, title: str, shown: NDArray[n
                 "showactive": False,
                 "x": 0.0,
                 "xanchor": "left",
-                "y": -0.06,
+                "y": 0.0,
                 "yanchor": "top",
-                "pad": {"t": 30},
+                "pad": {"t": 5},
                 "buttons": [
                     {"label": "Play", "method": "animate", "args": [None, play]},
                     {"label": "Pause", "method": "animate", "args": [[None], at_once]},

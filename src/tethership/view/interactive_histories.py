@@ -98,15 +98,19 @@ def _add_cables(figure: go.Figure, snapshots: Snapshots, time: list[Any], kept: 
 def _add_limits(figure: go.Figure, snapshots: Snapshots) -> None:
     """Draw the tensions watched, with their names."""
     limits = snapshots.flight.attributes["limits"]
-    for index, ((name, _), limit) in enumerate(zip(snapshots.config.limits, limits, strict=True)):
-        figure.add_hline(
-            y=limit,
-            row=1,  # pyright: ignore[reportArgumentType]
-            col=1,  # pyright: ignore[reportArgumentType]
+    ends = [float(snapshots.time[0]), float(snapshots.time[-1])]
+    named = list(zip((name for name, _ in snapshots.config.limits), limits, strict=True))
+    for index, (name, limit) in reversed(list(enumerate(named))):
+        trace = go.Scatter(
+            x=ends,
+            y=[limit, limit],
+            name=f"{name.replace('_', ' ')} {limit:g} N",
+            mode="lines",
             line={"color": style.LIMITS[index % len(style.LIMITS)], "width": 1, "dash": "longdash"},
-            annotation={"text": f"{name.replace('_', ' ')} {limit:g} N", "font": {"size": 10}},
-            annotation_position="top left",
+            legend="legend",
+            hoverinfo="skip",
         )
+        figure.add_trace(trace, row=1, col=1)
 
 
 def _dress(figure: go.Figure, snapshots: Snapshots, title: str) -> None:
@@ -115,7 +119,7 @@ def _dress(figure: go.Figure, snapshots: Snapshots, title: str) -> None:
         figure.update_yaxes(title={"text": label, "font": {"size": 12}}, row=row, col=1)
         axis: Any = figure.layout["yaxis" if row == 1 else f"yaxis{row}"]
         top = axis.domain[1]
-        place = {"x": 1.01, "y": top, "yanchor": "top", "font": {"size": 11}}
+        place: dict[str, Any] = {"x": 1.01, "y": top, "yanchor": "top", "font": {"size": 11}}
         figure.update_layout({"legend" if row == 1 else f"legend{row}": place})
     figure.update_xaxes(
         range=[float(snapshots.time[0]), max(float(snapshots.time[-1]), float(snapshots.time[0]) + 1e-3)]
@@ -136,7 +140,7 @@ def _dress(figure: go.Figure, snapshots: Snapshots, title: str) -> None:
         template="plotly_white",
         height=780,
         hovermode="x unified",
-        margin={"l": 60, "r": 10, "t": 60, "b": 40},
+        margin={"l": 60, "r": 10, "t": 85, "b": 40},
         updatemenus=[
             {
                 "type": "buttons",
@@ -144,8 +148,9 @@ def _dress(figure: go.Figure, snapshots: Snapshots, title: str) -> None:
                 "buttons": buttons,
                 "x": 1.0,
                 "xanchor": "right",
-                "y": 1.02,
+                "y": 1.005,
                 "yanchor": "bottom",
+                "pad": {"t": 0, "b": 0},
             }
         ]
         if snapshots.cables

@@ -62,8 +62,8 @@ class Figure:
         Stands below it; text as in `Section`.
     png : Path or bytes, optional
         The picture, as a file or its content.
-    interactive : plotly Figure, optional
-        Drawn when the reader opens it.
+    interactive : plotly Figure or Path, optional
+        Drawn when the reader opens it; of a file, what ``Figure.write_json`` wrote.
     alt : str
         What the picture shows, for who cannot see it; the caption if empty.
     label : str
@@ -72,7 +72,7 @@ class Figure:
 
     caption: str
     png: Path | bytes | None = None
-    interactive: "Plot | None" = None
+    interactive: "Plot | Path | None" = None
     alt: str = ""
     label: str = ""
 

@@ -1,6 +1,7 @@
 """Tables, figures and sections of a report as HTML, numbered. Depends on: view.report_content, view.report_text."""
 
 import base64
+import json
 import struct
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -14,6 +15,9 @@ from tethership.view.report_text import NONE, Place, Places, escaped, is_number,
 
 LONG = 24
 """Rows from which a table scrolls inside its box."""
+
+PROSE = 30
+"""Characters from which a cell is prose, whose column is not made too narrow."""
 
 SIGNS = {"good": "✓", "fair": "≈", "bad": "✗"}
 """Set before a verdict, so that it is read without colour."""
@@ -101,12 +105,11 @@ def section_html(placed: Placed, places: Places, level: int = 2) -> str:
 def table_html(index: int, table: Table, places: Places) -> str:
     """Return a table as HTML; raises ConfigError if its rows do not fit its head."""
     _check(index, table)
-    right = [_reads_as_numbers([row[i] for row in table.rows]) for i in range(len(table.columns))]
+    looks = [_look([row[i] for row in table.rows]) for i in range(len(table.columns))]
     head = "".join(
-        f'<th scope="col"{_classes("n" if flag else "")}>{marked(text)}</th>'
-        for text, flag in zip(table.columns, right, strict=True)
+        f'<th scope="col"{_classes(look)}>{marked(text)}</th>' for text, look in zip(table.columns, looks, strict=True)
     )
-    body = "\n".join(_row_html(row, right, table.verdict_column) for row in table.rows)
+    body = "\n".join(_row_html(row, looks, table.verdict_column) for row in table.rows)
     long = " long" if len(table.rows) > LONG else ""
     note = f'<p class="note">{marked(table.note, places)}</p>\n' if table.note else ""
     return (
@@ -133,10 +136,12 @@ def _check(index: int, table: Table) -> None:
         )
 
 
-def _reads_as_numbers(cells: Sequence[Cell]) -> bool:
-    """Return whether most of what a column holds are numbers."""
-    filled = [is_number(cell) for cell in cells if cell is not None and cell != ""]
-    return 2 * sum(filled) > len(filled)
+def _look(cells: Sequence[Cell]) -> str:
+    """Return the class of a column: n if most of what it holds are numbers, prose if it holds long texts."""
+    filled = [cell for cell in cells if cell is not None and cell != ""]
+    if 2 * sum(is_number(cell) for cell in filled) > len(filled):
+        return "n"
+    return "prose" if any(isinstance(cell, str) and len(cell) > PROSE for cell in filled) else ""
 
 
 def _classes(*names: str) -> str:
@@ -145,12 +150,12 @@ def _classes(*names: str) -> str:
     return f' class="{kept}"' if kept else ""
 
 
-def _row_html(row: Sequence[Cell], right: Sequence[bool], verdict_column: int | None) -> str:
+def _row_html(row: Sequence[Cell], looks: Sequence[str], verdict_column: int | None) -> str:
     """Return a row as HTML; its first cell is its head."""
     cells = []
     for i, cell in enumerate(row):
         kind = VERDICTS.get(cell, "") if isinstance(cell, str) else ""
-        classes = _classes("n" if right[i] else "", f"verdict {kind}" if kind else "")
+        classes = _classes(looks[i], f"verdict {kind}" if kind else "")
         tag, scope = ("th", ' scope="row"') if i == 0 else ("td", "")
         cells.append(f"<{tag}{scope}{classes}>{_cell_html(cell, kind)}</{tag}>")
     judged = "" if verdict_column is None else VERDICTS.get(str(row[verdict_column]), "")
@@ -184,8 +189,9 @@ def figure_html(index: int, figure: Figure, places: Places) -> str:
         width, height = struct.unpack(">II", data[16:24])
         source = base64.b64encode(data).decode("ascii")
         parts.append(
+            f'<div class="frame" role="group" tabindex="0" aria-label="Picture of figure {index}">\n'
             f'<img alt="{plain(figure.alt or figure.caption)}" width="{width}" height="{height}" '
-            f'src="data:image/png;base64,{source}">'
+            f'src="data:image/png;base64,{source}">\n</div>'
         )
     parts.append(f"<figcaption><b>Figure {index}.</b> {marked(figure.caption, places)}</figcaption>")
     if figure.interactive is not None:
@@ -198,25 +204,42 @@ def _png(index: int, figure: Figure) -> bytes:
     if isinstance(figure.png, bytes):
         data, name = figure.png, "its picture"
     else:
-        path = Path(str(figure.png))
-        try:
-            data, name = path.read_bytes(), str(path)
-        except OSError as error:
-            raise ConfigError(
-                f"figure {index} ({figure.caption!r}): cannot read {path}: {error.strerror or error}; draw it first"
-            ) from error
+        data, name = _read(index, figure, Path(str(figure.png))), str(figure.png)
     if not data.startswith(SIGNATURE) or len(data) < 24:
         raise ConfigError(f"figure {index} ({figure.caption!r}): {name} is no PNG; save the picture as .png")
     return data
 
 
+def _read(index: int, figure: Figure, path: Path) -> bytes:
+    """Return the content of a file of a figure."""
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise ConfigError(
+            f"figure {index} ({figure.caption!r}): cannot read {path}: {error.strerror or error}; draw it first"
+        ) from error
+
+
+def _plot_json(index: int, figure: Figure) -> str:
+    """Return the data of a figure's plot as JSON in which nothing can be read as HTML."""
+    plot = figure.interactive
+    if not isinstance(plot, Path):
+        return str(plot.to_json()).replace("<", "\\u003c") if plot is not None else ""
+    try:
+        data = json.loads(_read(index, figure, plot))
+        found = isinstance(data, dict) and {"data", "layout"} <= data.keys()
+    except ValueError:
+        data, found = None, False
+    if not found:
+        raise ConfigError(f"figure {index} ({figure.caption!r}): {plot} is no plot; write it with Figure.write_json")
+    return json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
+
+
 def _plot_html(index: int, figure: Figure) -> str:
     """Return the data of a plot, in a part of the page that draws it when it is opened."""
-    assert figure.interactive is not None
-    data = str(figure.interactive.to_json()).replace("<", "\\u003c")
     return (
         f'<details class="plot" data-plot="{index}">\n<summary>Explore figure {index}</summary>\n'
         f'<div class="canvas" role="group" aria-label="Figure {index}, to be explored"></div>\n'
         "<noscript><p>Exploring needs JavaScript.</p></noscript>\n"
-        f'<script type="application/json">{data}</script>\n</details>'
+        f'<script type="application/json">{_plot_json(index, figure)}</script>\n</details>'
     )

@@ -94,7 +94,7 @@ def docking_pictures(folder: Path, settings: Settings) -> dict[str, Any]:
         if table not in flights:
             continue
         title = f"Figure {number} of the paper, computed: {LAYER_WORDS[table]}, 12 m/s"
-        pictures.png(f"figure_{number}", plot_docking(flights[table]))
+        pictures.png(f"figure_{number}", plot_docking(flights[table], title=title))
         pictures.plot(f"figure_{number}", interactive_flight(flights[table], title))
         pictures.plot(f"figure_{number}_histories", interactive_histories(flights[table]))
         pictures.png(f"loads_{table}", plot_breakdown(flights[table]))

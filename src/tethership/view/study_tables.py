@@ -188,6 +188,7 @@ def retuned_table(rows: Rows) -> Table:
             row["perturbed"]["peak_mean"],
             row["perturbed"]["peak_high"],
             100.0 * row["perturbed"]["saturated"],
+            row["perturbed"]["saturated_seconds"],
             100.0 * row["perturbed"]["torn"],
             100.0 * row["perturbed"]["late"],
         ]
@@ -204,6 +205,7 @@ def retuned_table(rows: Rows) -> Table:
         "peak, mean of perturbed [N]",
         "95th percentile [N]",
         "saturated [%]",
+        "saturated, mean [s]",
         "above 481 N [%]",
         "too late [%]",
     ]

@@ -16,10 +16,16 @@
     if (details.dataset.drawn) return;
     details.dataset.drawn = "true";
     const { data, layout, frames } = JSON.parse(details.querySelector("script").textContent);
+    const canvas = details.querySelector(".canvas");
+    const narrow = canvas.clientWidth < 520;
     delete layout.width;
     layout.autosize = true;
-    const config = { responsive: true, displaylogo: false };
-    await library().newPlot(details.querySelector(".canvas"), { data, layout, frames, config });
+    if (narrow) {
+      delete layout.title;
+      if (layout.legend && layout.legend.x > 1) layout.showlegend = false;
+    }
+    const config = { responsive: true, displaylogo: false, displayModeBar: narrow ? false : "hover" };
+    await library().newPlot(canvas, { data, layout, frames, config });
     page.plots = String(Number(page.plots) + 1);
   };
 
