@@ -127,11 +127,11 @@ class Spectrum:
         slopes, _, _ = matrix_slopes(scenario, point, parameters, np.full(len(parameters), 1e-2))
         lateral = (matrix[np.ix_(LATERAL, LATERAL)], slopes[:, LATERAL[:, None], LATERAL])
         longitudinal = (matrix[np.ix_(LONGITUDINAL, LONGITUDINAL)], slopes[:, LONGITUDINAL[:, None], LONGITUDINAL])
-        slip = _eigenvalue_slope(*lateral, lambda v: np.argmax(v.real))
+        slip = _eigenvalue_slope(*lateral, lambda v: np.argmax(np.real(v)))
         vertical = _eigenvalue_slope(*longitudinal, lambda v: np.argmin(np.abs(v)))
-        pendulum = _eigenvalue_slope(*longitudinal, lambda v: np.argmax(v.imag))
-        roll = _eigenvalue_slope(*lateral, lambda v: np.argmax(v.imag))
-        growing = 1.0 if np.max(np.linalg.eigvals(longitudinal[0]).real) > 0 else -1.0
+        pendulum = _eigenvalue_slope(*longitudinal, lambda v: np.argmax(np.imag(v)))
+        roll = _eigenvalue_slope(*lateral, lambda v: np.argmax(np.imag(v)))
+        growing = 1.0 if np.max(np.real(np.linalg.eigvals(longitudinal[0]))) > 0 else -1.0
         each = np.stack([-slip, -vertical, growing * pendulum, roll]) / GROWTH
         each = np.where(self.residuals(values[None])[0][:, None] > 0, each, 0.0)
         starts = np.cumsum([0, *(len(unknown.parameters) for unknown in UNKNOWNS)])

@@ -234,7 +234,7 @@ def _interval(line: MoorDynLine, motion: CableMotion, i: int, step: float) -> Ve
     line.wind(0.5 * (motion.wind[i - 1] + motion.wind[i]))
     parts = max(math.ceil(duration / max(COUPLING, step) - 1e-9), 1)
     places = motion.span(np.linspace(time[i - 1], time[i], parts + 1))
-    return np.stack([line.step(*places[k : k + 2], duration / parts) for k in range(parts)])
+    return np.stack([line.step(places[k], places[k + 1], duration / parts) for k in range(parts)])
 
 
 def _check(data: xr.Dataset, properties: LineProperties, motion: CableMotion, count: int) -> None:

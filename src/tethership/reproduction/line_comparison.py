@@ -4,6 +4,7 @@ Depends on: reproduction.dynamic_cable (MoorDyn), simulation. The motion is that
 shows what tension that motion asks of it, not how a flight with it would have gone on.
 """
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -110,7 +111,7 @@ def compare_line(flight: Flight, title: str, segments: int = SEGMENTS) -> dict[s
 def _by_pace(pace: Array, difference: Array) -> list[dict[str, float | None]]:
     """Return the differences in ranges of the pace."""
     rows: list[dict[str, float | None]] = []
-    for low, high in zip(BINS[:-1], BINS[1:], strict=True):
+    for low, high in itertools.pairwise(BINS):
         inside = (pace >= low) & (pace < high)
         some = difference[inside]
         rows.append(

@@ -185,8 +185,8 @@ def _verdict(judged: dict[str, Any], formulation: str) -> str:
         return said + "They keep every constraint in every perturbed flight."
     return said + (
         f"No gains were found that keep every constraint in every perturbed flight: {', '.join(broken)} (saturated for "
-        f"{judged['saturated_seconds']:.2f} s on average). To turn 10° of misalignment before the cable is taut takes a "
-        "heading gain that saturates the side thrusters at once; gains that do not, snap the cable."
+        f"{judged['saturated_seconds']:.2f} s on average). To turn 10° of misalignment before the cable is taut takes "
+        "a heading gain that saturates the side thrusters at once; gains that do not, snap the cable."
     )
 
 
@@ -217,8 +217,9 @@ def _line_words(cases: dict[str, Any]) -> list[str]:
     snapping = [case for name, case in cases.items() if case["snaps_quasi_static"]]
     of = {law: [c for c in snapping if c["title"].startswith(law)] for law in ("the paper's", "elastic")}
     words = [
-        "Each cable was flown again as a line of MoorDyn whose upper end, winch and air are those of the recorded flight. "
-        "The motion is prescribed, so the line shows what tension it asks for, not how the flight would have gone on."
+        "Each cable was flown again as a line of MoorDyn whose upper end, winch and air are those of the recorded "
+        "flight. The motion is prescribed, so the line shows what tension it asks for, not how the flight would have "
+        "gone on."
     ]
     for law, name in (
         ("elastic", "elastic catenary"),
@@ -236,9 +237,9 @@ def _line_words(cases: dict[str, Any]) -> list[str]:
     ]
     if all(bins):
         words.append(
-            "Quasi-static tension may be trusted while the tension changes slowly against the cable's first transverse "
+            "Quasi-static tension may be trusted while it changes slowly against the cable's first transverse "
             f"mode, κ = |dT/dt|/(T ω₁) < {TRUSTED:g}: the median difference is {100 * min(bins[0]):.0f} to "
-            f"{100 * max(bins[1]):.0f} % there and {100 * min(bins[3]):.0f} to {100 * max(bins[3]):.0f} % where κ > 0.3. A "
-            "flight that leaves that range says so."
+            f"{100 * max(bins[1]):.0f} % there and {100 * min(bins[3]):.0f} to {100 * max(bins[3]):.0f} % where "
+            "κ > 0.3. A flight that leaves that range says so."
         )
     return words

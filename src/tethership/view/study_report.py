@@ -76,7 +76,7 @@ def _abstract(study: _Study) -> list[str]:
     ]
     table = study.part("tables")
     if table is not None:
-        total = dict.fromkeys(("agrees", "near", "differs", "prediction"), 0)
+        total: dict[str, int] = dict.fromkeys(("agrees", "near", "differs", "prediction"), 0)
         for rows in table["tables"].values():
             for word, number in counts(rows).items():
                 total[word] += number
