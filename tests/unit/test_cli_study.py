@@ -1,0 +1,117 @@
+"""`reproduce`, `identify`, `tune` from the shell: keys, reuse, wrong input, the report in a browser."""
+
+import json
+import shutil
+import subprocess
+
+import pytest
+from typer.testing import CliRunner
+
+import tethership as ts
+from tethership.cli import app
+from tethership.errors import ConfigError
+
+BROWSER = next(
+    (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
+)
+FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--virtual-time-budget=20000", "--dump-dom"]
+
+
+def run(*arguments: str):
+    return CliRunner().invoke(app, list(arguments))
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    """Tables, Figures 12 to 15 and the identification, computed once."""
+    folder = tmp_path_factory.mktemp("study")
+    only = "table3,table5,figure14,identification"
+    result = run("reproduce", "--only", only, "--json", "--out", str(folder))
+    assert result.exit_code == 0, result.output
+    return folder, only, json.loads(result.stdout)
+
+
+def test_reproduce(study):
+    """Tables with published, computed and ratio, claims with their verdict, counts, files; nothing is NaN."""
+    folder, _, found = study
+    assert set(found["tables"]) == {"table3", "table4", "table5", "table6"}
+    row = found["tables"]["table3"][0]
+    assert row["published"] == 283
+    assert row["ratio"] == pytest.approx(row["computed"] / row["published"])
+    assert list(found["claims"]) == [f"D{number}" for number in range(1, 12)]
+    assert all(isinstance(claim["holds"], bool) and claim["numbers"] for claim in found["claims"].values())
+    assert found["counts"]["holds"] + found["counts"]["does_not_hold"] == 11
+    assert found["counts"]["agrees"] >= 40
+    assert json.loads((folder / "tables.json").read_text())["tables"] == found["tables"]
+    for name in ("report.html", "figures/figure_14.png", "figures/figure_14.html", "figures/figure_15.png"):
+        assert (folder / name).stat().st_size > 10_000, name
+
+
+def test_second_run_reuses_what_is_unchanged(study):
+    """The same again computes nothing; a lost picture is drawn again, and only that."""
+    folder, only, _ = study
+    again = json.loads(run("reproduce", "--only", only, "--json", "--out", str(folder)).stdout)
+    assert again["computed_anew"] == []
+    (folder / "figures" / "fit_residuals.png").unlink()
+    again = json.loads(run("reproduce", "--only", only, "--json", "--out", str(folder)).stdout)
+    assert again["computed_anew"] == ["fit_pictures"]
+
+
+@pytest.mark.skipif(BROWSER is None, reason="no Chromium on this machine: the report is not opened in a browser")
+def test_report_in_a_browser(study, tmp_path):
+    """Every picture loads, every plot is drawn, no script fails."""
+    folder, _, _ = study
+    assert BROWSER is not None
+    page = (folder / "report.html").as_uri() + "#open-all"
+    done = subprocess.run(
+        [BROWSER, *FLAGS, f"--user-data-dir={tmp_path}", page], capture_output=True, text=True, timeout=120, check=True
+    )
+    head = done.stdout[: done.stdout.index(">", done.stdout.index("<html")) + 1]
+    assert 'data-errors="0"' in head
+    assert done.stdout.count("<img") >= 7
+    assert "main-svg" in done.stdout or "js-plotly-plot" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["reproduce", "--only", "table33"], r"--only has no part 'table33'; did you mean 'table3'"),
+        (["reproduce", "--only", "table7"], r"--only has no part 'table7'"),
+        (["reproduce", "--formulation", "publishd"], r"--formulation 'publishd'.*published"),
+        (["identify", "aerostat"], r"not the ship of the paper"),
+        (["identify", "--power", "5", "--population", "64"], r"fewer than the population"),
+        (["identify", "--formulation", "wrong"], r"formulation"),
+        (["tune", "hover"], r"tuning needs all layers"),
+        (["tune", "--searched", "20", "--flights", "10"], r"more than the 10 flights"),
+        (["tune", "docking_paper", "--set", "control.heading.gain=0"], r"must be above 0"),
+    ],
+)
+def test_wrong_input(arguments, message, tmp_path):
+    """One clear line that says what came and what is allowed."""
+    result = run(*arguments, "--out", str(tmp_path / "out"))
+    assert isinstance(result.exception, ConfigError)
+    with pytest.raises(ConfigError, match=f"(?s){message}"):
+        raise result.exception
+
+
+def test_identify(tmp_path):
+    """A search that is far too small still gives all keys and a vehicle that flies."""
+    few = ["--power", "5", "--population", "8", "--generations", "1", "--left-out", "0"]
+    result = run("identify", *few, "--json", "--out", str(tmp_path))
+    assert result.exit_code == 0, result.output
+    found = json.loads(result.stdout)
+    assert {"parameters", "spread", "misfit", "left_out_misfit", "at_bound", "correlation", "members"} <= set(found)
+    scenario = ts.load_scenario("docking_paper", {"vehicle": str(tmp_path / "lotte_identified_published.toml")})
+    assert ts.trim(scenario).outcome is not ts.TrimOutcome.no_equilibrium
+
+
+def test_tune(tmp_path):
+    """Never worse than the gains it starts from; the scenario it writes flies with the gains it tells."""
+    few = ["--flights", "8", "--searched", "4", "--population", "8", "--generations", "1"]
+    result = run("tune", "docking_paper", *few, "--json", "--out", str(tmp_path))
+    assert result.exit_code == 0, result.output
+    found = json.loads(result.stdout)
+    assert set(found["parameters"]) == set(found["former"])
+    config = ts.load_scenario(str(tmp_path / "docking_retuned.toml"), {"vehicle": "lotte_identified_published"}).config
+    assert config.control.heading.gain == pytest.approx(found["parameters"]["control.heading.gain"], rel=1e-5)
+    assert config.wind.speed == 12.0
