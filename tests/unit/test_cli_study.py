@@ -14,7 +14,18 @@ from tethership.errors import ConfigError
 BROWSER = next(
     (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
 )
-FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--virtual-time-budget=20000", "--dump-dom"]
+FLAGS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--virtual-time-budget=20000",
+    "--dump-dom",
+)
 
 
 def run(*arguments: str):
@@ -78,7 +89,7 @@ def test_report_in_a_browser(study, tmp_path):
         (["reproduce", "--only", "table33"], r"--only has no part 'table33'; did you mean 'table3'"),
         (["reproduce", "--only", "table7"], r"--only has no part 'table7'"),
         (["reproduce", "--formulation", "publishd"], r"--formulation 'publishd'.*published"),
-        (["identify", "aerostat"], r"not the ship of the paper"),
+        (["identify", "aerostat"], r"not the paper's docking"),
         (["identify", "--power", "5", "--population", "64"], r"fewer than the population"),
         (["identify", "--formulation", "wrong"], r"formulation"),
         (["tune", "hover"], r"tuning needs all layers"),

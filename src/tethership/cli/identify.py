@@ -78,12 +78,15 @@ def identify(
 def _check(scenario: Any) -> None:
     """Raise ConfigError where a scenario is not the paper's docking."""
     from tethership.fitting.space import THRUSTERS
+    from tethership.scenario.control_schema import LAYERS
 
-    names = [thruster.name for thruster in scenario.config.vehicle.thrusters]
-    if names != list(THRUSTERS) or len(scenario.config.cables) != 1 or len(scenario.config.vehicle.fins) != 4:
+    config = scenario.config
+    names = [thruster.name for thruster in config.vehicle.thrusters]
+    ship = names == list(THRUSTERS) and len(config.vehicle.fins) == 4 and len(config.cables) == 1
+    if not ship or set(scenario.layers) != set(LAYERS) or len(config.gusts) != 1:
         raise ConfigError(
-            f"{scenario.name} is not the ship of the paper (thrusters {', '.join(THRUSTERS)}, four fins, one cable); "
-            "its tables can only be fitted with that: start from docking_paper"
+            f"{scenario.name} is not the paper's docking (thrusters {', '.join(THRUSTERS)}, four fins, one cable, one "
+            "gust, all three layers); its tables can only be fitted with that: start from docking_paper"
         )
 
 
