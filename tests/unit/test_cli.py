@@ -66,6 +66,7 @@ def test_dock_json_and_again(run, tmp_path):
     assert result["wind"] == 12.0
     assert result["layers"] == ["rewind"]
     assert result["formulation"] == "consistent"
+    assert "quasi-static" in result["cable_warning"]
     assert len(result["seconds_above"]) == 4
     assert sorted(result["seconds_above"], reverse=True) == result["seconds_above"]
     assert (tmp_path / "a" / "docking.png").read_bytes().startswith(b"\x89PNG")

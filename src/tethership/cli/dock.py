@@ -77,7 +77,7 @@ def dock(
         print_json(result)
     else:
         _print(result, flight)
-    if result["cable_warning"]:
+    if result["cable_warning"] and not json:  # in the JSON it has its key
         typer.echo(f"tethership: warning: {result['cable_warning']}", err=True)
     if not flight.outcome.is_answer:
         raise typer.Exit(NO_ANSWER)
