@@ -5,7 +5,8 @@ stable. The tables of section 4 and the spectra of section 3 are of one ship: a 
 """
 
 import itertools
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import equinox as eqx
 import jax
@@ -14,7 +15,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from tethership.analysis.continuation import nearby_equilibrium
-from tethership.analysis.linearize import linearize
+from tethership.analysis.linearize import comparable_coordinates, linearize
 from tethership.analysis.matrix_slopes import matrix_slopes
 from tethership.analysis.posing import Question, ask, pose
 from tethership.analysis.right_side import input_vector, right_side
@@ -25,7 +26,8 @@ from tethership.scenario.build import build_system
 from tethership.scenario.parameters import with_values
 
 LATERAL = np.array([1, 3, 5, 6])
-"""Places of v, p, r, φ among the states: heading and east, null for a free ship, are left out."""
+"""Places of v, p, r, φ among the states. In comparable coordinates v is that through the air, on which heading and
+east, null for a free ship, do not act; over the ground ψ acts on v by the wind, and the block alone is no ship's."""
 
 LONGITUDINAL = np.array([0, 2, 4, 7, 11])
 """Places of U, W, q, θ, D: north is null."""
@@ -36,19 +38,29 @@ GROWTH = 0.02
 MILD = 0.15
 """Largest |Re λ| of a pendulum called mild [1/s]."""
 
+NO_OSCILLATION = 10.0
+"""Residual of a pendulum, or of a roll, that does not oscillate [tolerances]; no slope leads out of there."""
+
 PARTS = ("side-slip unstable", "vertical unstable", "pendulum mild", "roll stable")
 """What each residual stands for: zero where it holds."""
 
 
-def _growths(config: ScenarioConfig, places: tuple, question: Question, value: Array) -> Float[Array, "4"]:
-    """Return Re λ of side-slip, vertical, pendulum and roll [1/s]."""
+def _through_air(matrix: Any, comparable: Any) -> Any:
+    """Return A, or its slopes, in comparable coordinates; last two axes the states."""
+    return comparable @ matrix @ jnp.linalg.inv(comparable)
+
+
+def _growths(config: ScenarioConfig, places: tuple, question: Question, value: Array) -> Float[Array, "6"]:
+    """Return Re λ of side-slip, vertical, pendulum and roll, and Im λ of pendulum and roll [1/s]."""
     here = with_values(config, places, value)
     plant = build_system(here)
     problem = pose(here, plant, question)
     found = nearby_equilibrium(problem, jnp.zeros(len(question.unknowns.effort)))
     state, command = problem.unpack(found)
     inputs = input_vector(plant, command)
-    matrix = jax.jacfwd(lambda s: right_side(plant, s, inputs))(state.as_vector())
+    vector = state.as_vector()
+    own = jax.jacfwd(lambda s: right_side(plant, s, inputs))(vector)
+    matrix = _through_air(own, comparable_coordinates(plant, vector))
     lateral = jnp.linalg.eigvals(matrix[np.ix_(LATERAL, LATERAL)])
     longitudinal = jnp.linalg.eigvals(matrix[np.ix_(LONGITUDINAL, LONGITUDINAL)])
     slow = jnp.argmin(jnp.abs(longitudinal))
@@ -58,15 +70,19 @@ def _growths(config: ScenarioConfig, places: tuple, question: Question, value: A
             longitudinal.real[slow],
             longitudinal.real[jnp.argmax(longitudinal.imag)],
             lateral.real[jnp.argmax(lateral.imag)],
+            jnp.max(longitudinal.imag),
+            jnp.max(lateral.imag),
         ]
     )
 
 
-def _hinged(growth: Float[Array, "4"]) -> Float[Array, "4"]:
+def _hinged(growth: Float[Array, "6"]) -> Float[Array, "4"]:
     """Return the residuals [tolerances] of growth rates [1/s]: zero where the claim's part holds."""
-    slip, vertical, pendulum, roll = growth
+    slip, vertical, pendulum, roll, swinging, rolling = growth
     over = jnp.stack([-slip, -vertical, jnp.abs(pendulum) - MILD, roll])
-    return jnp.maximum(over, 0.0) / GROWTH
+    real = jnp.stack([jnp.zeros(()), jnp.zeros(()), swinging, rolling]) == 0.0
+    unlike = real & np.array([False, False, True, True])
+    return jnp.where(unlike, NO_OSCILLATION, jnp.maximum(over, 0.0) / GROWTH)
 
 
 @eqx.filter_jit
@@ -74,12 +90,15 @@ def _residuals(config: ScenarioConfig, places: tuple, question: Question, values
     return jax.vmap(lambda value: _hinged(_growths(config, places, question, value)))(values)
 
 
-def _eigenvalue_slope(matrix: np.ndarray, slopes: np.ndarray, choose: Callable[[np.ndarray], np.intp]) -> np.ndarray:
-    """Return d Re λ/dp of one eigenvalue of a block for dA/dp of shape (parameters, n, n): wᴴ dA v / wᴴ v."""
-    values, right = np.linalg.eig(matrix)
+def _eigenvalue_slope(
+    matrix: np.ndarray, slopes: np.ndarray, block: np.ndarray, choose: Callable[[np.ndarray], np.intp]
+) -> tuple[complex, np.ndarray]:
+    """Return one eigenvalue of a block of A and d Re λ/dp for dA/dp of shape (parameters, 12, 12): wᴴ dA v / wᴴ v."""
+    values, right = np.linalg.eig(matrix[np.ix_(block, block)])
     which = choose(values)
     w, v = np.linalg.inv(right)[which], right[:, which]  # rows of the inverse are left eigenvectors with w v = 1
-    return np.real(np.einsum("i,kij,j->k", w, slopes, v))
+    slope = np.einsum("i,kij,j->k", w, slopes[:, block[:, None], block], v)
+    return complex(values[which]), np.real(slope)
 
 
 class Spectrum:
@@ -89,12 +108,10 @@ class Spectrum:
     ----------
     formulation : str
         consistent or published.
-    changes : mapping, optional
-        Further changes of the scenario `hover`.
     """
 
-    def __init__(self, formulation: str, changes: Mapping[str, object] | None = None) -> None:
-        scenario = load_scenario("hover", {"formulation": formulation, **(changes or {})})
+    def __init__(self, formulation: str) -> None:
+        scenario = load_scenario("hover", {"formulation": formulation})
         self._scenario = scenario
         known = list_parameters(scenario.config)
         self.names = tuple(name for unknown in UNKNOWNS for name in unknown.parameters)
@@ -123,16 +140,16 @@ class Spectrum:
         known = list_parameters(scenario.config)
         parameters = [known[name] for name in self.names]
         point = trim(scenario)
-        matrix = np.asarray(linearize(scenario, point).A)
-        slopes, _, _ = matrix_slopes(scenario, point, parameters, np.full(len(parameters), 1e-2))
-        lateral = (matrix[np.ix_(LATERAL, LATERAL)], slopes[:, LATERAL[:, None], LATERAL])
-        longitudinal = (matrix[np.ix_(LONGITUDINAL, LONGITUDINAL)], slopes[:, LONGITUDINAL[:, None], LONGITUDINAL])
-        slip = _eigenvalue_slope(*lateral, lambda v: np.argmax(np.real(v)))
-        vertical = _eigenvalue_slope(*longitudinal, lambda v: np.argmin(np.abs(v)))
-        pendulum = _eigenvalue_slope(*longitudinal, lambda v: np.argmax(np.imag(v)))
-        roll = _eigenvalue_slope(*lateral, lambda v: np.argmax(np.imag(v)))
-        growing = 1.0 if np.max(np.real(np.linalg.eigvals(longitudinal[0]))) > 0 else -1.0
-        each = np.stack([-slip, -vertical, growing * pendulum, roll]) / GROWTH
+        model = linearize(scenario, point)
+        own, _, _ = matrix_slopes(scenario, point, parameters, np.full(len(parameters), 1e-2))
+        # The coordinates depend on wind and attitude only, which no unknown moves.
+        matrix, slopes = (np.asarray(_through_air(part, model.comparable)) for part in (model.A, own))
+        _, slip = _eigenvalue_slope(matrix, slopes, LATERAL, lambda v: np.argmax(np.real(v)))
+        _, vertical = _eigenvalue_slope(matrix, slopes, LONGITUDINAL, lambda v: np.argmin(np.abs(v)))
+        swing, pendulum = _eigenvalue_slope(matrix, slopes, LONGITUDINAL, lambda v: np.argmax(np.imag(v)))
+        turn, roll = _eigenvalue_slope(matrix, slopes, LATERAL, lambda v: np.argmax(np.imag(v)))
+        pendulum = pendulum * (np.sign(swing.real) if swing.imag else 0.0)
+        each = np.stack([-slip, -vertical, pendulum, roll if turn.imag else 0.0 * roll]) / GROWTH
         each = np.where(self.residuals(values[None])[0][:, None] > 0, each, 0.0)
         starts = np.cumsum([0, *(len(unknown.parameters) for unknown in UNKNOWNS)])
         return np.stack([each[:, a:b].sum(axis=1) for a, b in itertools.pairwise(starts)], axis=-1)
