@@ -22,15 +22,13 @@ METRICS = ("tension_max", "tension_mean", "E", "theta_rms", "ADC")
 
 def cases(scenario: ts.Scenario) -> Cases:
     """Return all flights, row by row."""
-    blocks, names = [], ()
-    for layers in TABLES.values():
-        for wind in (6.0, 12.0):
-            columns = perturbed(scenario.changed({"wind.speed": wind}), EACH, seed=1)
-            columns |= {key: np.full(EACH, value) for key, value in layer_switches(scenario, layers).items()}
-            row = Cases((), np.zeros((EACH, 0))).with_columns(columns)
-            blocks.append(row.values)
-            names = row.names
-    return Cases(names, np.concatenate(blocks))
+    rows = [
+        {**perturbed(scenario.changed({"wind.speed": wind}), EACH, seed=1), **layer_switches(scenario, layers)}
+        for layers in TABLES.values()
+        for wind in (6.0, 12.0)
+    ]
+    blocks = [Cases.of(row, EACH) for row in rows]
+    return Cases(blocks[0].names, np.concatenate([block.values for block in blocks]))
 
 
 def main() -> None:

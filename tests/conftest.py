@@ -1,6 +1,8 @@
 """Shared starts: a scenario, its trim and one flight, computed once per worker."""
 
 import gc
+import shutil
+import subprocess
 from pathlib import Path
 
 import jax
@@ -38,3 +40,33 @@ def point(docking):
 def flight(docking, point):
     """Its flight with all three layers."""
     return ts.dock(docking, point)
+
+
+BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+
+BROWSER_FLAGS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--virtual-time-budget=20000",
+    "--dump-dom",
+]
+
+
+@pytest.fixture
+def browsed(tmp_path):
+    """Return a function from a page and a fragment to the page as a headless browser has it once it is loaded."""
+    if BROWSER is None:
+        pytest.skip("NO BROWSER: pages are NOT tested in one; install Debian's chromium (apt-get install chromium)")
+
+    def shown(page: Path, fragment: str = "") -> str:
+        profile = f"--user-data-dir={tmp_path / 'profile'}"
+        command = [BROWSER, *BROWSER_FLAGS, profile, f"{page.as_uri()}{fragment}"]
+        return subprocess.run(command, capture_output=True, text=True, timeout=120, check=True).stdout
+
+    return shown

@@ -1,8 +1,6 @@
 """The report works in a browser, from disk: pictures are seen, plots are drawn when opened, no script fails."""
 
 import re
-import shutil
-import subprocess
 
 import numpy as np
 import plotly.graph_objects as go
@@ -10,33 +8,6 @@ import pytest
 from matplotlib.figure import Figure as Drawing
 
 from tethership.view.report import Figure, Section, Table, write_report
-
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-
-pytestmark = pytest.mark.skipif(
-    BROWSER is None,
-    reason="NO BROWSER: the report is NOT tested in one; install Debian's chromium (apt-get install chromium)",
-)
-
-FLAGS = [
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--virtual-time-budget=10000",
-    "--dump-dom",
-]
-
-
-def shown(page, profile, fragment=""):
-    """Return the page as the browser has it once it is loaded."""
-    command = [str(BROWSER), *FLAGS, f"--user-data-dir={profile}", f"{page.as_uri()}{fragment}"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
-    return done.stdout
 
 
 def told(dom, name):
@@ -65,8 +36,8 @@ def page(tmp_path_factory):
     return write_report(folder / "report.html", "Small", ["Words."], [Section("S", ["p"], tables, figures)], {"a": 1})
 
 
-def test_pictures_are_seen_and_plots_wait(page, tmp_path):
-    dom = shown(page, tmp_path)
+def test_pictures_are_seen_and_plots_wait(page, browsed):
+    dom = browsed(page)
     assert told(dom, "errors") == "0"
     assert told(dom, "images") == "3"
     assert told(dom, "plots") == "0"
@@ -74,8 +45,8 @@ def test_pictures_are_seen_and_plots_wait(page, tmp_path):
     assert drawn(dom) == 0
 
 
-def test_opening_draws_the_plots(page, tmp_path):
-    dom = shown(page, tmp_path, "#open-all")
+def test_opening_draws_the_plots(page, browsed):
+    dom = browsed(page, "#open-all")
     assert told(dom, "errors") == "0"
     assert told(dom, "plots") == "2"
     assert drawn(dom) == 2
@@ -85,10 +56,10 @@ def test_opening_draws_the_plots(page, tmp_path):
     ("broken", "error"),
     [("<script>undefinedFunction()</script>", "undefinedFunction"), ('<img src="https://example.org/a.png">', "img")],
 )
-def test_errors_would_be_seen(page, tmp_path, broken, error):
+def test_errors_would_be_seen(page, browsed, tmp_path, broken, error):
     """Both kinds of errors that the tests above deny are counted where they occur, the network's among them."""
     copy = tmp_path / "broken.html"
     copy.write_text(page.read_text(encoding="utf-8").replace("</header>", f"{broken}</header>"), encoding="utf-8")
-    dom = shown(copy, tmp_path / "profile")
+    dom = browsed(copy)
     assert int(told(dom, "errors")) >= 1
     assert re.search(rf'data-last-error="[^"]*({error}|blocked https://example.org)', dom)

@@ -60,8 +60,13 @@ class Cases(NamedTuple):
     names: tuple[str, ...]
     values: np.ndarray
 
-    def with_columns(self, columns: Mapping[str, np.ndarray]) -> "Cases":
-        """Return the cases with more parameters, or the same ones replaced; columns of shape (flights,)."""
+    @classmethod
+    def of(cls, columns: Mapping[str, np.ndarray | float], count: int) -> "Cases":
+        """Return so many cases with these parameters; a number is the same in all."""
+        return cls((), np.zeros((count, 0))).with_columns(columns)
+
+    def with_columns(self, columns: Mapping[str, np.ndarray | float]) -> "Cases":
+        """Return the cases with more parameters, or the same ones replaced; columns of shape (flights,) or numbers."""
         kept = [i for i, name in enumerate(self.names) if name not in columns]
         added = [np.broadcast_to(value, len(self.values)) for value in columns.values()]
         values = np.column_stack([self.values[:, kept], *added])
@@ -164,7 +169,7 @@ def fly_cases(
     limits = jnp.asarray(scenario.config.watched_tensions())
     if unbreakable:
         config = _unbreakable(config)
-    shared = stop, limits, jnp.asarray(scenario.config.stop.time_limit), jnp.asarray(step)
+    time_limit, length = jnp.asarray(scenario.config.stop.time_limit), jnp.asarray(step)
 
     count = len(cases.values)
     size = FEW if count <= 2 * FEW else BATCH
@@ -176,7 +181,7 @@ def fly_cases(
         values = jnp.asarray(cases.values[rows].T)
         loops, vectors, left = _prepared(config, places, question, values, start)
         held, axes = hoisted(loops, differ)
-        result = _flown(held, axes, shared[0], shared[1], vectors, shared[2], shared[3])
+        result = _flown(held, axes, stop, limits, vectors, time_limit, length)
         return {**metrics_of(result), "unbalanced": np.asarray(left)}
 
     chunks = [np.minimum(np.arange(first, first + size), count - 1) for first in range(0, count, size)]
@@ -189,6 +194,25 @@ def fly_cases(
             if progress is not None:
                 progress(done, count)
     return {name: np.concatenate([part[name] for part in found])[:count] for name in found[0]}
+
+
+def fly_blocks(scenario: Scenario, blocks: Sequence[Cases], unbreakable: bool = False) -> list[dict[str, np.ndarray]]:
+    """Return the metrics of several blocks of cases that move the same parameters, all flown in one go.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        As in `fly_cases`.
+    blocks : sequence of Cases
+        With the same names in the same order.
+    unbreakable : bool
+        As in `fly_cases`.
+    """
+    cases = Cases(blocks[0].names, np.concatenate([block.values for block in blocks]))
+    flown = fly_cases(scenario, cases, unbreakable=unbreakable)
+    ends = np.cumsum([len(block.values) for block in blocks])[:-1]
+    split = {name: np.split(array, ends) for name, array in flown.items()}
+    return [{name: parts[i] for name, parts in split.items()} for i in range(len(blocks))]
 
 
 def _unbreakable(config: ScenarioConfig) -> ScenarioConfig:

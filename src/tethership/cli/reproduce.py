@@ -60,11 +60,10 @@ def reproduce(
     settings = Settings(_formulation(formulation), flights=flights, seed=seed)
     writable_folder(out)
     begun = time.perf_counter()
-    _forget_others(out, jobs)
     with progress_bar("reproduce") as report:
         anew = run_jobs(jobs, out, settings, report, fresh)
         report("report", 1.0)
-        path = write_study(out, settings, _footer(settings))
+        path = write_study(out, settings, set(jobs), _footer(settings))
     result: dict[str, Any] = {"formulation": settings.formulation, "tables": {}, "claims": {}}
     for name in ("tables", "linear"):
         if name in jobs:
@@ -127,22 +126,15 @@ def _chosen(only: str | None) -> dict[str, "Job"]:
     if only is None:
         return jobs
     wanted: list[str] = []
-    for item in (text.strip() for text in only.split(",")):
+    for item in filter(None, (text.strip() for text in only.split(","))):
         if item not in ITEMS:
             raise ConfigError(f"--only has no part {item!r}{suggestion(item, ITEMS)} Allowed: {', '.join(ITEMS)}")
         wanted += ITEMS[item]
+    if not wanted:
+        raise ConfigError(f"--only names no part. Allowed: {', '.join(ITEMS)}")
     while missing := {need for name in wanted for need in jobs[name].needs} - set(wanted):
         wanted += sorted(missing)
     return {name: job for name, job in jobs.items() if name in wanted}
-
-
-def _forget_others(out: Path, jobs: dict[str, "Job"]) -> None:
-    """Take parts out of the folder that were not asked for: a report shows what belongs to it."""
-    from tethership.reproduction.jobs import part_file
-
-    for name in _jobs():
-        if name not in jobs:
-            part_file(out, name).unlink(missing_ok=True)
 
 
 def _counts(result: dict[str, Any]) -> dict[str, int]:

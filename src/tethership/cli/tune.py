@@ -28,7 +28,9 @@ def tune(
     wind: Annotated[float, typer.Option("--wind", metavar="M_PER_S", help="Wind to tune for [m/s].")] = 12.0,
     formulation: FormulationOption = None,
     flights: Annotated[int, typer.Option(min=8, max=10_000, help="Perturbed flights that judge the result.")] = 200,
-    searched: Annotated[int, typer.Option(min=4, help="How many of them the search looks at.")] = 24,
+    searched: Annotated[
+        int | None, typer.Option(min=4, help="How many of them the search looks at. Default: 24, or all if fewer.")
+    ] = None,
     population: Annotated[int, typer.Option(min=8, max=1000, help="Sets of gains of a generation.")] = 32,
     generations: Annotated[int, typer.Option(min=1, max=1000, help="Of the differential evolution.")] = 40,
     seed: Annotated[int, typer.Option(min=0, help="Of everything random.")] = 1,
@@ -45,6 +47,7 @@ def tune(
     from tethership.fitting.tune import tune as search
     from tethership.fitting.tune import tuning_document
 
+    searched = min(24, flights) if searched is None else searched
     if searched > flights:
         raise ConfigError(f"--searched {searched} is more than the {flights} flights there are; lower it")
     loaded = chosen_scenario(scenario, wind, formulation, changes)
@@ -84,7 +87,11 @@ def _written(document: dict[str, Any], name: str, changes: list[str] | None, out
             packaged_text("scenarios", name),
             document["parameters"],
             document["wind"],
-            f"Docking, gains retuned for {document['wind']:g} m/s",
+            {
+                "title": f"Docking, gains retuned for {document['wind']:g} m/s",
+                "description": f"{name} with gains tuned over perturbed flights in {document['wind']:g} m/s of wind",
+                "formulation": document["formulation"],
+            },
             f"tuned, tethership tune, {document['wind']:g} m/s",
         )
         stem = name.removesuffix("_paper")

@@ -46,7 +46,7 @@ class Budget(NamedTuple):
     power: int = 11
     population: int = 96
     generations: int = 60
-    rounds: int = 30
+    rounds: int = 100
     left_out: int = 24
 
 
@@ -138,9 +138,7 @@ def _searched(
 ) -> Archive:
     """Return the archive of a search that starts at the best of given vectors, whose residuals are known."""
     archive = Archive(objective, report)
-    archive.places.append(first)
-    archive.residuals.append(found)
-    archive.least = float(misfit(found).min())
+    archive.keep(first, found)
     evolve(archive, archive.best(budget.population), generations, seed)
     refine(archive, archive.best()[0], objective.slopes())
     return archive
@@ -193,7 +191,7 @@ def identify(
     found = np.concatenate([found[:, : len(what)] * rescale, found[:, len(what) :]], axis=1)
     objective = Objective(scenario, rows, what, spectrum)
     archive = _searched(objective, places, found, budget, budget.generations, seed, reporter("evolution"))
-    members, _ = spread(archive, budget.rounds, budget.population, seed)
+    members = spread(archive, budget.rounds, budget.population, seed)
     best = archive.best()[0]
     at_best = archive.residuals_of(best)
     left_out = {}

@@ -11,8 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tethership.campaign import Cases, fly_cases
-from tethership.campaign.flights import Progress, layer_switches
+from tethership.campaign import Cases, fly_blocks, layer_switches
 from tethership.fitting.space import named_values
 from tethership.fitting.targets import Row, published_rows
 from tethership.scenario import Scenario
@@ -36,8 +35,9 @@ SECONDS = 0.5
 TIMED = 2
 """Thresholds whose times are fitted: 144.3 N and 481 N; above the others the paper has 0.03 s at most."""
 
-FAILED = 5.0
-"""Residual of every number of a flight that did not go on to its end, in tolerances."""
+FAILED = 15.0
+"""Residual of every number of a flight that did not go on to its end, in tolerances: as far off as a peak 15 times the
+published one, so that to fail is never better than to fit badly."""
 
 TIME_LIMIT = 75.0
 """Longest flight of a fit [s]: the paper's take 61.67 to 66.07 s, and a batch goes on until its last flight ends."""
@@ -86,7 +86,6 @@ def fly_rows(
     values: np.ndarray,
     rows: Sequence[Row],
     more: Mapping[str, np.ndarray] | None = None,
-    progress: Progress | None = None,
 ) -> list[dict[str, np.ndarray]]:
     """Return the metrics of every row's flight for every vector of unknowns.
 
@@ -100,8 +99,6 @@ def fly_rows(
         Winds and layers to be flown.
     more : mapping, optional
         Further columns, by dotted name.
-    progress : callable, optional
-        As in `fly_cases`.
 
     Notes
     -----
@@ -112,19 +109,12 @@ def fly_rows(
     list of dict
         One per row, arrays with the vector first.
     """
-    count = len(values)
     columns = {**named_values(values), **(more or {})}
-    blocks = []
-    names: tuple[str, ...] = ()
-    for row in rows:
-        fixed = {"wind.speed": row.wind, **layer_switches(scenario, row.layers)}
-        cases = Cases((), np.zeros((count, 0))).with_columns(columns)
-        cases = cases.with_columns({key: np.full(count, value) for key, value in fixed.items()})
-        blocks.append(cases.values)
-        names = cases.names
-    limited = scenario.changed({"stop.time_limit": TIME_LIMIT})
-    flown = fly_cases(limited, Cases(names, np.concatenate(blocks)), progress=progress, unbreakable=True)
-    return [{key: array[i * count : (i + 1) * count] for key, array in flown.items()} for i in range(len(rows))]
+    blocks = [
+        Cases.of({**columns, "wind.speed": row.wind, **layer_switches(scenario, row.layers)}, len(values))
+        for row in rows
+    ]
+    return fly_blocks(scenario.changed({"stop.time_limit": TIME_LIMIT}), blocks, unbreakable=True)
 
 
 def residuals(flown: Sequence[dict[str, np.ndarray]], rows: Sequence[Row], what: Sequence[Item]) -> np.ndarray:

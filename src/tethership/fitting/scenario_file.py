@@ -9,8 +9,8 @@ _HEADER = re.compile(r"^\[\[?(?P<section>[\w.]+)\]\]?")
 _ENTRY = re.compile(r'^(?P<key>\w+)\s*=\s*\{\s*value\s*=\s*[^,]+,\s*unit\s*=\s*"(?P<unit>[^"]+)".*\}(?P<rest>.*)$')
 
 
-def retuned_text(template: str, gains: Mapping[str, float], wind: float, title: str, source: str) -> str:
-    """Return a scenario file's text with other gains and wind.
+def retuned_text(template: str, gains: Mapping[str, float], wind: float, words: Mapping[str, str], source: str) -> str:
+    """Return a scenario file's text with other gains, wind and words.
 
     Parameters
     ----------
@@ -20,8 +20,8 @@ def retuned_text(template: str, gains: Mapping[str, float], wind: float, title: 
         Dotted name → value [SI]; the file's own unit must be SI.
     wind : float
         [m/s].
-    title : str
-        Of the new scenario.
+    words : mapping
+        Values of top-level keys that are words: title, description, formulation.
     source : str
         Of the gains.
 
@@ -36,8 +36,8 @@ def retuned_text(template: str, gains: Mapping[str, float], wind: float, title: 
         header, entry = _HEADER.match(line), _ENTRY.match(line)
         if header:
             section = header["section"]
-        elif line.startswith("title ="):
-            line = f'title = "{title}"'
+        elif section == "" and (word := line.partition("=")[0].strip()) in words:
+            line = f'{word} = "{words[word]}"'
         elif entry and f"{section}.{entry['key']}" in wanted:
             name = f"{section}.{entry['key']}"
             met.add(name)

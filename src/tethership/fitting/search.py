@@ -16,6 +16,9 @@ import scipy.stats
 Objective = Callable[[np.ndarray], np.ndarray]
 """From places (vectors, unknowns) to residuals (vectors, items)."""
 
+Score = Callable[[np.ndarray], np.ndarray]
+"""From residuals (vectors, items) to what is made small (vectors,)."""
+
 NEARLY = 1.1
 """A vector whose misfit is within this factor of the best fits nearly as well."""
 
@@ -35,10 +38,14 @@ class Archive:
     ----------
     places, residuals : list of ndarray
         What was asked and what came, call by call.
+    score : callable
+        What is made small.
     """
 
-    def __init__(self, objective: Objective, report: Callable[[int, float], None] | None = None) -> None:
-        self._objective, self._report = objective, report
+    def __init__(
+        self, objective: Objective, report: Callable[[int, float], None] | None = None, score: Score = misfit
+    ) -> None:
+        self._objective, self._report, self.score = objective, report, score
         self.places: list[np.ndarray] = []
         self.residuals: list[np.ndarray] = []
         self.count = 0
@@ -47,13 +54,17 @@ class Archive:
     def __call__(self, places: np.ndarray) -> np.ndarray:
         """Return the residuals of vectors and keep them."""
         found = self._objective(places)
-        self.places.append(places.copy())
-        self.residuals.append(found)
+        self.keep(places, found)
         self.count += len(places)
-        self.least = min(self.least, float(misfit(found).min()))
         if self._report is not None:
             self._report(self.count, self.least)
         return found
+
+    def keep(self, places: np.ndarray, found: np.ndarray) -> None:
+        """Take up vectors whose residuals are known."""
+        self.places.append(places.copy())
+        self.residuals.append(found)
+        self.least = min(self.least, float(self.score(found).min()))
 
     def all(self) -> tuple[np.ndarray, np.ndarray]:
         """Return places and residuals of everything looked at."""
@@ -67,7 +78,7 @@ class Archive:
     def best(self, count: int = 1) -> np.ndarray:
         """Return the places of the best vectors, best first."""
         places, residual = self.all()
-        return places[np.argsort(misfit(residual), kind="stable")[:count]]
+        return places[np.argsort(self.score(residual), kind="stable")[:count]]
 
 
 def sobol(unknowns: int, power: int, seed: int) -> np.ndarray:
@@ -78,7 +89,7 @@ def sobol(unknowns: int, power: int, seed: int) -> np.ndarray:
 def evolve(archive: Archive, population: np.ndarray, generations: int, seed: int) -> None:
     """Improve a population by differential evolution; everything looked at is in the archive."""
     scipy.optimize.differential_evolution(
-        lambda x: misfit(archive(np.atleast_2d(x.T))),
+        lambda x: archive.score(archive(np.atleast_2d(x.T))),
         [(0.0, 1.0)] * population.shape[1],
         init=population,  # pyright: ignore[reportArgumentType]
         maxiter=generations,
@@ -134,27 +145,28 @@ def refine(archive: Archive, start: np.ndarray, exact: Slopes, most: int = 12) -
     )
 
 
-def spread(archive: Archive, rounds: int, size: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return places and misfits of the set that fits within `NEARLY` of the best.
+def spread(archive: Archive, rounds: int, size: int, seed: int) -> np.ndarray:
+    """Return places of the set that fits within `NEARLY` of the best, spread evenly over it.
 
     Parameters
     ----------
     archive : Archive
         After a search; the walk starts at its members of the set.
     rounds, size : int
-        Moves of each walker, and walkers.
+        Moves of each walker, and walkers. On an ellipsoid in eleven dimensions 18 moves of 64 walkers see 0.6 to 1.1 of
+        its widths, 200 of 96 see 0.9 to 1.0.
     seed : int
         Of the random moves.
 
     Notes
     -----
-    Each walker moves by γ(a − b) + ε with a, b other walkers (ter Braak 2006, differential-evolution Markov chain)
-    and stays where the move leaves the set or the box: a walk that is uniform over the set. Where it finds a better
-    vector, the set is drawn from that one.
+    Each walker moves by γ(a − b) + ε with a, b other walkers (ter Braak 2006, differential-evolution Markov chain),
+    reflected at the bounds, and stays, and counts again, where the move leaves the set: a walk that is uniform over the
+    set. Where it finds a better vector, the set is drawn from that one. The first half of the walk is left out.
     """
     generator = np.random.default_rng(seed)
     places, residual = archive.all()
-    value = misfit(residual)
+    value = archive.score(residual)
     inside = np.flatnonzero(value <= NEARLY * value.min())
     chosen = generator.choice(inside, size, replace=len(inside) < size)
     walkers, level = places[chosen], value[chosen]
@@ -163,14 +175,12 @@ def spread(archive: Archive, rounds: int, size: int, seed: int) -> tuple[np.ndar
     for _ in range(rounds):
         first, second = (generator.permutation(size) for _ in range(2))
         step = scale * generator.uniform(0.2, 1.0, (size, 1)) * (walkers[first] - walkers[second])
-        trial = walkers + step + generator.normal(0.0, 3e-3, walkers.shape)
-        within = np.all((trial >= 0.0) & (trial <= 1.0), axis=1)
-        found = misfit(archive(np.clip(trial, 0.0, 1.0)))
-        accepted = within & (found <= NEARLY * archive.least)
+        moved = walkers + step + generator.normal(0.0, 3e-3, walkers.shape)
+        trial = 1.0 - np.abs(1.0 - np.mod(moved, 2.0))  # reflected at 0 and 1
+        found = archive.score(archive(trial))
+        accepted = found <= NEARLY * archive.least
         walkers, level = np.where(accepted[:, None], trial, walkers), np.where(accepted, found, level)
-        kept.append((walkers.copy(), level.copy()))
+        kept.append((walkers, level))
     half = kept[len(kept) // 2 :]
     places, value = np.concatenate([k[0] for k in half]), np.concatenate([k[1] for k in half])
-    inside = value <= NEARLY * archive.least
-    places, where = np.unique(places[inside], axis=0, return_index=True)
-    return places, value[inside][where]
+    return places[value <= NEARLY * archive.least]

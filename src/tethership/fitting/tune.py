@@ -215,14 +215,14 @@ def tune(
         if progress is not None:
             progress("gains", min(count / total, 1.0), least)
 
-    archive = _Costs(costs, report)
+    archive = Archive(costs, report, score=lambda found: found[:, 0])  # a cost is no residual
     start = sobol(len(GAINS), max(int(np.ceil(np.log2(population))), 1), seed)[:population]
     start = 0.5 + 0.6 * (start - 0.5)
     start[0] = 0.5
     evolve(archive, start, generations, seed)
-    ranked = gains_at(archive.best(8))
-    judged = judge(scenario, np.concatenate([ranked, own[None]]), columns)
-    best = int(np.argmin([judgement.cost for judgement in judged[:-1]]))
+    ranked = np.concatenate([gains_at(archive.best(8)), own[None]])
+    judged = judge(scenario, ranked, columns)
+    best = int(np.argmin([judgement.cost for judgement in judged]))
     return Tuning(
         {name: float(f"{value:.6g}") for name, value in zip(GAINS, ranked[best], strict=True)},
         judged[-1],
@@ -230,10 +230,6 @@ def tune(
         time.perf_counter() - begun,
         archive.count,
     )
-
-
-class _Costs(Archive):
-    """An archive whose objective is a cost, not residuals: its misfit grows with the cost, and so ranks the same."""
 
 
 def _own_gains(scenario: Scenario) -> np.ndarray:

@@ -35,6 +35,9 @@ FRACTION = 0.5
 LOSS_FACTOR = 0.05
 """Loss of a stretched braided polyester rope at its first axial mode [-]; see `rope_damping`."""
 
+MOST_STRAIN = 0.1
+"""Strain beyond which the solution is called wrong [-]; the paper's rope breaks at 0.044."""
+
 COUPLING = 1e-3
 """Longest step between two positions of the end [s]: a twentieth of an axial wave's way along 20 m of the rope."""
 
@@ -174,7 +177,7 @@ def dynamic_line(
     count = int(np.searchsorted(motion.time, until, side="right"))
     rows = _follow(properties, motion, count, segments, fraction)
     axes = ("time", "ground_axis")
-    data = xr.Dataset(
+    return xr.Dataset(
         {
             "force": (axes, rows["force"], {"units": "N"}),
             "anchor_force": (axes, rows["anchor_force"], {"units": "N"}),
@@ -186,8 +189,6 @@ def dynamic_line(
         {"time": ("time", motion.time[:count], {"units": "s"}), "ground_axis": ["north", "east", "down"]},
         {**properties._asdict(), "segments": segments, "fraction": fraction},
     )
-    _check(data, properties, motion, count)
-    return data
 
 
 def _settled(line: MoorDynLine, motion: CableMotion, step: float) -> None:
@@ -214,6 +215,7 @@ def _follow(
         for i in range(count):
             step = fraction * properties.stable_time_step(length[min(i + 1, count - 1)] / segments)
             forces = _interval(line, motion, i, step)
+            _check(line, forces, float(time[i]))
             rows["force"][i], rows["anchor_force"][i] = forces[-1], line.anchor_force
             rows["highest"][i] = np.linalg.norm(forces, axis=1).max()
             rows["time_step"][i] = step
@@ -237,11 +239,12 @@ def _interval(line: MoorDynLine, motion: CableMotion, i: int, step: float) -> Ve
     return np.stack([line.step(places[k], places[k + 1], duration / parts) for k in range(parts)])
 
 
-def _check(data: xr.Dataset, properties: LineProperties, motion: CableMotion, count: int) -> None:
-    """Raise SolveError for tensions that cannot be: not finite, or beyond what the strain gives by far."""
-    tension = data["tension_highest"].to_numpy()
-    if not np.isfinite(tension).all():
-        raise SolveError("MoorDyn returned tensions that are not finite; lower `fraction`")
+def _check(line: MoorDynLine, forces: Vector, time: float) -> None:
+    """Raise SolveError for what cannot be: forces that are not finite, a node out of reach of its rope."""
+    nodes = line.nodes()
+    reach = (1.0 + MOST_STRAIN) * np.linspace(0.0, line.length, len(nodes))
+    if not (np.isfinite(forces).all() and np.all(np.linalg.norm(nodes, axis=1) <= reach)):
+        raise SolveError(f"MoorDyn's rope is torn or stretched past reason at {time:.3f} s; lower `fraction`")
 
 
 __all__ = ["CableMotion", "dynamic_line", "flown_cable", "line_properties", "rope_damping"]

@@ -29,8 +29,6 @@ class Settings(NamedTuple):
     ----------
     formulation : str
         consistent or published.
-    scenario : str
-        The paper's docking, identified.
     flights : int
         Perturbed flights of each row.
     seed : int
@@ -38,7 +36,6 @@ class Settings(NamedTuple):
     """
 
     formulation: str
-    scenario: str = "docking_paper"
     flights: int = 200
     seed: int = 1
 
@@ -132,7 +129,9 @@ def _stands(folder: Path, name: str, key: str) -> bool:
         stored = json.loads(part_file(folder, name).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return False
-    return stored.get("key") == key and all((folder / file).exists() for file in stored["result"].get("files", []))
+    if not isinstance(stored, dict) or stored.get("key") != key:
+        return False
+    return all((folder / file).exists() for file in stored["result"].get("files", []))
 
 
 def _keep(folder: Path, name: str, key: str, result: dict[str, Any]) -> None:

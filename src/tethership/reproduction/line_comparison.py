@@ -4,7 +4,6 @@ Depends on: reproduction.dynamic_cable (MoorDyn), simulation. The motion is that
 shows what tension that motion asks of it, not how a flight with it would have gone on.
 """
 
-import itertools
 from typing import Any
 
 import numpy as np
@@ -13,24 +12,21 @@ from numpy.typing import NDArray
 from tethership.reproduction.dynamic_cable import dynamic_line
 from tethership.reproduction.flights_read import CONTROL_THRESHOLD
 from tethership.simulation import Flight
-from tethership.simulation.quasi_static import share_outside, tension_pace
+from tethership.simulation.quasi_static import outside
 
 Array = NDArray[np.float64]
 
 SEGMENTS = 10
 """Segments of the line: 20 give the same peaks within 1 % at four times the cost (tests)."""
 
-BEGUN = 1.0
-"""Time left out at the start [s]: the line hangs at rest while the ship is let go at once."""
+BEGUN = 2.0
+"""Time left out at the start [s]: the winch's sudden start jolts a line that hung at rest, for a second and a half."""
 
 APART = 0.3
 """Snaps nearer than this are one [s]."""
 
 MATCHED = 0.25
 """Largest time between a snap of one and its like of the other [s]."""
-
-BINS = (0.0, 0.03, 0.1, 0.3, np.inf)
-"""Paces κ between which the differences are told [-]."""
 
 FLOOR = 20.0
 """Tension below which a difference counts as if it were of this [N]."""
@@ -70,8 +66,8 @@ def compare_line(flight: Flight, title: str, segments: int = SEGMENTS) -> dict[s
 
     Notes
     -----
-    `by_pace` has, for each range of κ, the share of the time and the median and 90th percentile of the difference over
-    the larger tension (at least 20 N).
+    `trusted` and `untrusted` have the median and the 90th percentile of the difference over the larger tension (at
+    least 20 N) inside and outside the range of `quasi_static`, `worst_trusted` the largest difference inside [N].
 
     Raises
     ------
@@ -81,7 +77,7 @@ def compare_line(flight: Flight, title: str, segments: int = SEGMENTS) -> dict[s
     line = dynamic_line(flight, segments=segments)
     time = flight.data["time"].to_numpy()
     static, dynamic = flight.data["tension"].to_numpy()[:, 0], line["tension"].to_numpy()
-    use = time >= BEGUN
+    use, away = time >= BEGUN, outside(flight)
     difference = np.abs(static - dynamic) / np.maximum(np.maximum(static, dynamic), FLOOR)
     own, lines = snaps(time[use], static[use]), snaps(time[use], dynamic[use])
     delays = _matched(own, lines)
@@ -100,27 +96,19 @@ def compare_line(flight: Flight, title: str, segments: int = SEGMENTS) -> dict[s
         "snaps_dynamic": len(lines),
         "snaps_matched": len(delays),
         "snap_delay": 1000.0 * float(np.median(delays)) if delays else None,
-        "outside": share_outside(flight),
-        "by_pace": _by_pace(tension_pace(flight)[:, 0][use], difference[use]),
+        "outside": float(away[use].mean()),
+        "trusted": _told(difference[use], ~away[use]),
+        "untrusted": _told(difference[use], away[use]),
+        "worst_trusted": float(np.abs(static - dynamic)[use & ~away].max(initial=0.0)),
         "time": time[shown].round(4).tolist(),
         "quasi_static": static[shown].round(2).tolist(),
         "dynamic": dynamic[shown].round(2).tolist(),
     }
 
 
-def _by_pace(pace: Array, difference: Array) -> list[dict[str, float | None]]:
-    """Return the differences in ranges of the pace."""
-    rows: list[dict[str, float | None]] = []
-    for low, high in itertools.pairwise(BINS):
-        inside = (pace >= low) & (pace < high)
-        some = difference[inside]
-        rows.append(
-            {
-                "from": low,
-                "to": None if np.isinf(high) else high,
-                "share": float(inside.mean()),
-                "median": float(np.median(some)) if len(some) else None,
-                "high": float(np.percentile(some, 90.0)) if len(some) else None,
-            }
-        )
-    return rows
+def _told(difference: Array, some: NDArray[np.bool_]) -> dict[str, float | None]:
+    """Return median and 90th percentile of the relative differences of some instants; None where there is none."""
+    chosen = difference[some]
+    if not len(chosen):
+        return {"median": None, "high": None}
+    return {"median": float(np.median(chosen)), "high": float(np.percentile(chosen, 90.0))}

@@ -27,7 +27,7 @@ from tethership.reproduction.terms import load_breakdown, switch_off
 from tethership.reproduction.uncertainty import uncertainty
 from tethership.scenario import Scenario, list_parameters, load_scenario
 from tethership.simulation import Flight, dock
-from tethership.simulation.quasi_static import TRUSTED
+from tethership.simulation.quasi_static import MEMORY, TRUSTED
 
 GROUND_EFFECT = 0.01
 """Coefficient of the ground effect of claim D7 [1/m], vertical wind per ground speed and height: not published."""
@@ -44,18 +44,17 @@ def study_scenario(settings: Settings, wind: float | None = None, ground_effect:
     Parameters
     ----------
     settings : Settings
-        Formulation and scenario.
+        Its formulation.
     wind : float, optional
         [m/s].
     ground_effect : float
         Coefficient [1/m]; with 0 the flights are those without, by the same compiled program.
     """
     changes: dict[str, Any] = {"formulation": settings.formulation, "ground.effect_coefficient": ground_effect}
-    if settings.scenario == "docking_paper":
-        changes["vehicle"] = vehicle_name(settings.formulation)
+    changes["vehicle"] = vehicle_name(settings.formulation)
     if wind is not None:
         changes["wind.speed"] = wind
-    return load_scenario(settings.scenario, changes)
+    return load_scenario("docking_paper", changes)
 
 
 def flight_file(folder: Path, key: FlightKey, grounded: bool = False) -> Path:
@@ -231,15 +230,16 @@ def _line_words(cases: dict[str, Any]) -> list[str]:
                 f"With the {name}, the quasi-static peak is {min(ratios):.2f} to {max(ratios):.2f} times the line's in "
                 "the flights that snap."
             )
-    bins = [
-        [case["by_pace"][i]["median"] for case in of["elastic"] if case["by_pace"][i]["median"] is not None]
-        for i in range(4)
-    ]
-    if all(bins):
+    trusted, untrusted = (
+        [case[key]["median"] for case in of["elastic"] if case[key]["median"] is not None]
+        for key in ("trusted", "untrusted")
+    )
+    if trusted and untrusted:
+        worst = max(case["worst_trusted"] for case in of["elastic"])
         words.append(
-            "Quasi-static tension may be trusted while it changes slowly against the cable's first transverse "
-            f"mode, κ = |dT/dt|/(T ω₁) < {TRUSTED:g}: the median difference is {100 * min(bins[0]):.0f} to "
-            f"{100 * max(bins[1]):.0f} % there and {100 * min(bins[3]):.0f} to {100 * max(bins[3]):.0f} % where "
-            "κ > 0.3. A flight that leaves that range says so."
+            f"Quasi-static tension may be trusted where κ = |dT/dt|/(T ω₁) stayed below {TRUSTED:g} for {MEMORY:g} s, "
+            f"ω₁ being the cable's first transverse mode: the median difference is {100 * min(trusted):.0f} to "
+            f"{100 * max(trusted):.0f} % there, {worst:.0f} N at most, and {100 * min(untrusted):.0f} "
+            f"to {100 * max(untrusted):.0f} % elsewhere. A flight that leaves that range says so."
         )
     return words

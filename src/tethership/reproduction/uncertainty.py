@@ -7,15 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from tethership.campaign import Cases, fly_cases, layer_switches, perturbed
+from tethership.campaign import Cases, fly_blocks, layer_switches, perturbed
 from tethership.fitting.space import named_values
 from tethership.fitting.targets import TABLES
 from tethership.reproduction.tables import THRESHOLDS, published_numbers
 from tethership.scenario import Scenario
+from tethership.simulation import Outcome
 from tethership.simulation.batch import CODES
-
-FLIGHTS = 200
-"""Perturbed flights of each row."""
 
 LOW, HIGH = 5.0, 95.0
 """Percentiles of the interval."""
@@ -25,8 +23,8 @@ def uncertainty(
     scenario: Scenario,
     members: np.ndarray,
     winds: tuple[float, ...],
-    flights: int = FLIGHTS,
-    seed: int = 1,
+    flights: int,
+    seed: int,
     perturb: bool = True,
 ) -> list[dict[str, Any]]:
     """Return the interval of each table cell.
@@ -53,24 +51,15 @@ def uncertainty(
         flights that broke the cable).
     """
     drawn = members[np.random.default_rng(seed).integers(0, len(members), flights)]
-    blocks, keys, names = [], [], ()
-    for table, layers in TABLES.items():
-        for wind in winds:
-            here = scenario.changed({"wind.speed": wind})
-            columns: dict[str, Any] = {**named_values(drawn), "wind.speed": np.full(flights, wind)}
-            if perturb:
-                columns |= perturbed(here, flights, seed)
-            columns |= {name: np.full(flights, value) for name, value in layer_switches(scenario, layers).items()}
-            cases = Cases((), np.zeros((flights, 0))).with_columns(columns)
-            blocks.append(cases.values)
-            keys.append((table, wind))
-            names = cases.names
-    flown = fly_cases(scenario, Cases(names, np.concatenate(blocks)))
-    rows = []
-    for i, (table, wind) in enumerate(keys):
-        part = {name: value[i * flights : (i + 1) * flights] for name, value in flown.items()}
-        rows += _cells(table, wind, part)
-    return rows
+    keys = [(table, wind) for table in TABLES for wind in winds]
+    blocks = []
+    for table, wind in keys:
+        columns: dict[str, Any] = {**named_values(drawn), "wind.speed": wind}
+        if perturb:
+            columns |= perturbed(scenario.changed({"wind.speed": wind}), flights, seed)
+        blocks.append(Cases.of({**columns, **layer_switches(scenario, TABLES[table])}, flights))
+    flown = fly_blocks(scenario, blocks)
+    return [cell for key, part in zip(keys, flown, strict=True) for cell in _cells(*key, part)]
 
 
 def _cells(table: str, wind: float, flown: dict[str, np.ndarray]) -> list[dict[str, Any]]:
@@ -79,7 +68,7 @@ def _cells(table: str, wind: float, flown: dict[str, np.ndarray]) -> list[dict[s
     names = ("tension_max", "tension_mean", "rewind_rate_min", "docking_time", "ADC", "E", "theta_rms")
     values = {name: flown[name] for name in names}
     values |= {f"seconds_above {limit}": flown["seconds_above"][:, i] for i, limit in enumerate(THRESHOLDS)}
-    broken = float(np.mean(flown["outcome"] == [code.name for code in CODES].index("cable_broken")))
+    broken = float(np.mean(flown["outcome"] == CODES.index(Outcome.cable_broken)))
     rows = []
     for name, value in values.items():
         finite = value[np.isfinite(value)]

@@ -36,8 +36,6 @@ class Signals(NamedTuple):
         Of the hull [m].
     misalignment : Float[Array, ""]
         χ of the first cable [rad].
-    elongation : Float[Array, ""]
-        e of the first cable [-].
     """
 
     tension: Float[Array, ""]
@@ -48,7 +46,6 @@ class Signals(NamedTuple):
     rewind_rate: Float[Array, ""]
     clearance: Float[Array, ""]
     misalignment: Float[Array, ""]
-    elongation: Float[Array, ""]
 
 
 def signals(loop: ClosedLoop, now: Instant) -> Signals:
@@ -64,7 +61,6 @@ def signals(loop: ClosedLoop, now: Instant) -> Signals:
         rewind_rate=jnp.min(now.rewind_rate) if cables else zero,
         clearance=loop.plant.environment.ground - loop.plant.ship.lowest_point(now.state),
         misalignment=misalignment(now.state.attitude, cables[0].span) if cables else zero,
-        elongation=safe_norm(cables[0].span) / now.lengths[0] if cables else zero,
     )
 
 

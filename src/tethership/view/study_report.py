@@ -3,14 +3,14 @@
 Depends on: view.report, view.study_tables, reproduction.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import plotly.io
 
 from tethership.fitting.fit_file import stored_fit
-from tethership.reproduction.jobs import Settings, load_part, part_file
+from tethership.reproduction.jobs import Settings, load_part
 from tethership.reproduction.linear_figures import FIGURES
 from tethership.reproduction.misprints import MISPRINTS
 from tethership.reproduction.tables import counts
@@ -21,29 +21,35 @@ from tethership.view.study_pictures import DOCKING_FIGURES, LAYER_WORDS
 PAPER = "Riboldi, Croce, Pagani, He, Bortolini, Airship dynamics in a tethered docking maneuver"
 
 
-class _Study:
-    """What was computed, part by part, and the pictures of it."""
+KINDS = ("png", "json")
+"""Files of a figure: its picture, its plot."""
 
-    def __init__(self, folder: Path, settings: Settings) -> None:
+
+class _Study:
+    """What was asked for, part by part, and the pictures of it; whatever else is in the folder stays out."""
+
+    def __init__(self, folder: Path, settings: Settings, parts: Collection[str]) -> None:
         self.folder, self.settings = folder, settings
         self.fit = stored_fit(settings.formulation)
+        self._parts = {name: load_part(folder, name) for name in parts}
+        self._files = {file for part in self._parts.values() for file in part.get("files", [])}
 
     def part(self, name: str) -> dict[str, Any] | None:
         """Return a part's result, None where it was not asked for."""
-        return load_part(self.folder, name) if part_file(self.folder, name).exists() else None
+        return self._parts.get(name)
 
-    def figure(self, name: str, caption: str, plot: str | None = None, label: str = "") -> list[Figure]:
-        """Return a picture with its plot, nothing where it was not drawn."""
-        png = self.folder / "figures" / f"{name}.png"
-        if not png.exists():
+    def figure(self, name: str, caption: str, label: str = "") -> list[Figure]:
+        """Return a picture, a plot or both, nothing where neither was asked for."""
+        png, data = (f"figures/{name}.{kind}" if f"figures/{name}.{kind}" in self._files else None for kind in KINDS)
+        if png is None and data is None:
             return []
-        data = self.folder / "figures" / f"{plot or name}.json"
-        drawn = plotly.io.from_json(data.read_text(encoding="utf-8"), skip_invalid=True) if data.exists() else None
-        return [Figure(caption, png, drawn, caption, label)]
+        picture, plot = (None if file is None else self.folder / file for file in (png, data))
+        drawn = None if plot is None else plotly.io.from_json(plot.read_text(encoding="utf-8"), skip_invalid=True)
+        return [Figure(caption, picture, drawn, caption, label)]
 
 
-def write_study(folder: Path, settings: Settings, footer: Mapping[str, Any]) -> Path:
-    """Write report.html from the parts that are in a folder; returns where.
+def write_study(folder: Path, settings: Settings, parts: Collection[str], footer: Mapping[str, Any]) -> Path:
+    """Write report.html from parts of a study that are in a folder; returns where.
 
     Parameters
     ----------
@@ -51,10 +57,12 @@ def write_study(folder: Path, settings: Settings, footer: Mapping[str, Any]) -> 
         Of the study.
     settings : Settings
         What it is of.
+    parts : collection of str
+        Names of the jobs whose results belong to it.
     footer : mapping
         Versions and provenance.
     """
-    study = _Study(folder, settings)
+    study = _Study(folder, settings, parts)
     makers = (
         _tables, _identification, _linear, _docking, _variants, _line, _terms, _uncertainty, _retuning, _misprints
     )  # fmt: skip
@@ -69,9 +77,8 @@ def _abstract(study: _Study) -> list[str]:
     lines = [
         f"Section by section, the study of {PAPER} is computed again and set beside its print, in the formulation "
         f"`{form}`, with a ship whose unpublished numbers were identified from the tables at 6 and 12 m/s. "
-        f"Every number "
-        "below was computed in the run that wrote this page, but for the identification itself, which is stored (its "
-        "misfit is computed again); what was fitted, what is predicted and what does not "
+        "Every number below was computed in the run that wrote this page, but for the identification itself, which is "
+        "stored (its misfit to the tables is computed again); what was fitted, what is predicted and what does not "
         "hold is said where it stands."
     ]
     table = study.part("tables")
@@ -85,9 +92,8 @@ def _abstract(study: _Study) -> list[str]:
         lines.append(
             f"Of the published numbers in Tables 3–6, **{total['agrees']}** agree within 20 % (times of docking within "
             f"2 %), **{total['near']}** are near (a factor 1.5) and **{total['differs']}** differ; "
-            f"{total['prediction']} "
-            f"numbers at 9 m/s are predictions. Of {len(claims)} claims **{len(held)}** hold in every part"
-            + (f": {', '.join(held)}." if held else ".")
+            f"{total['prediction']} numbers at 9 m/s are predictions. Of {len(claims)} claims "
+            f"**{len(held)}** hold in every part" + (f": {', '.join(held)}." if held else ".")
         )
     return lines
 
@@ -107,8 +113,7 @@ def _tables(study: _Study) -> Section | None:
     words = [
         "The docking starts at rest from the trim with 10° added to roll, pitch and yaw about the tether point, in a "
         "uniform wind from the north with a gust from the west at 20 s, and ends at 1.5 m of cable. A number "
-        "**agrees** "
-        "within 20 % (docking times within 2 %), is **near** within a factor 1.5 (4 %), else **differs**."
+        "**agrees** within 20 % (docking times within 2 %), is **near** within a factor 1.5 (4 %), else **differs**."
     ]
     return Section("Tables 3–6", words, drawn)
 
@@ -118,15 +123,13 @@ def _identification(study: _Study) -> Section:
     unmet = fit["spectrum_unmet"]
     words = [
         "Fins, drag coefficients of the hull and nominal thrusts are not published. They were searched inside "
-        "the bounds "
-        "of [[parameters]] for the least misfit to the rows at 6 and 12 m/s and to claims L1 and L2 of the spectrum: "
+        "the bounds of [[parameters]] for the least misfit to the rows at 6 and 12 m/s and to claims L1 and L2: "
         f"{fit['vectors']} vectors by Sobol points, differential evolution and least squares. Times over a threshold "
         "have a wide tolerance, and every tolerance is widened by how far its number moves when the initial attitude "
         "moves by 1 %.",
         f"The best vector has a misfit of **{fit['misfit']:.3f}** with the spectrum and "
-        f"{fit['tables_misfit']:.3f} to the "
-        "tables alone. It is one of a set: what fits within 10 % of it spreads as [[marginals]] shows, and only "
-        "combinations of numbers are well determined ([[correlation]]).",
+        f"{fit['tables_misfit']:.3f} to the tables alone. It is one of a set: what fits within 10 % of it spreads as "
+        "[[marginals]] shows, and only combinations of numbers are well determined ([[correlation]]).",
         (
             "Identified numbers at a bound of their range: "
             + ", ".join(n.replace("_", " ") for n in fit["at_bound"])
@@ -141,12 +144,13 @@ def _identification(study: _Study) -> Section:
             else "The identified ship has the free spectrum that L1 and L2 describe."
         ),
     ]
+    if "remark" in fit:
+        words.append(f"**To be known:** {fit['remark']}")
     shown = [tables.parameter_table(fit)]
     if (left := tables.left_out_table(fit)) is not None:
         words.append(
             "Fits that never saw one of the tables say of it what [[left_out]] has: a misfit well above that of "
-            "what was "
-            "fitted means that the table carries information the others do not."
+            "what was fitted means that the table carries information the others do not."
         )
         shown.append(left)
     figures = [
@@ -180,10 +184,7 @@ def _docking(study: _Study) -> Section | None:
     for number, table in DOCKING_FIGURES.items():
         caption = f"Figure {number} of the paper, computed: {LAYER_WORDS[table]}, 12 m/s, gust of 4 m/s at 20 s."
         figures += study.figure(f"figure_{number}", caption)
-        histories = study.folder / "figures" / f"figure_{number}_histories.json"
-        if histories.exists():
-            drawn = plotly.io.from_json(histories.read_text(encoding="utf-8"), skip_invalid=True)
-            figures.append(Figure(f"Histories of the flight of Figure {number}.", None, drawn))
+        figures += study.figure(f"figure_{number}_histories", f"Histories of the flight of Figure {number}.")
     figures += study.figure("figure_15", "Figure 15 of the paper, computed: the three trajectories.")
     if part is None and not figures:
         return None
@@ -241,8 +242,7 @@ def _uncertainty(study: _Study) -> Section | None:
     inside = sum(row["inside"] for row in rows)
     words = [
         f"Each row was flown {study.settings.flights} times with the initial attitude moved by up to 2°, the "
-        f"gust by up to "
-        "1 s, the wind by up to 3 %, and the ship drawn from the identified set.",
+        "gust by up to 1 s, the wind by up to 3 %, and the ship drawn from the identified set.",
         f"Of {len(rows)} published numbers **{inside}** lie inside the 5–95 % range.",
     ]
     return Section(
@@ -256,8 +256,8 @@ def _retuning(study: _Study) -> Section | None:
         return None
     words = [
         "The paper remarks that its gains might be tuned for 12 m/s and leaves that undone. `tethership tune` "
-        "searched the "
-        f"gains of all four layers over perturbed flights; both were flown again {part['flights']} times here.",
+        "searched the gains of all four layers over perturbed flights; both were flown again "
+        f"{part['flights']} times here.",
         part["words"],
     ]
     return Section("Gains retuned for 12 m/s", words, [tables.retuned_table(part["rows"])])
