@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from tethership.fitting.fit_file import stored_fit
 from tethership.reproduction.misprints import MISPRINTS
 
 HERE = Path(__file__).parent
@@ -57,6 +58,26 @@ def variants(study: dict[str, Any]) -> str:
     return table(["reading", "what the print leaves open", "misfit, same ship", "fitted anew"], rows)
 
 
+def fit_words(fit: dict[str, Any]) -> str:
+    """Return what the fit found, in words."""
+    left = ", ".join(f"{value:.2f} of Table {name}" for name, value in fit["left_out_misfit"].items())
+    bound = ", ".join(name.replace("_", " ") for name in fit["at_bound"]) or "none"
+    return (
+        f"The search looked at {fit['vectors']} vectors; the best has a misfit of {fit['misfit']:.2f} (tables alone "
+        f"{fit['tables_misfit']:.2f}; 0.83 is 20 % off in every number). Its spectrum "
+        f"{'lacks ' + ', '.join(fit['spectrum_unmet']) if fit['spectrum_unmet'] else 'is the one L1 and L2 describe'}. "
+        f"At a bound: {bound}. Fits that never saw one of the tables have a misfit of {left}."
+    )
+
+
+def misses(study: dict[str, Any]) -> str:
+    """Return in words which numbers differ."""
+    rows = [row for table in study["tables"].values() for row in table if row["verdict"] == "differs"]
+    named = [f"{r['metric']} with {r['layers']} at {r['wind']:g} m/s ({r['ratio']:.2f} ×)" for r in rows]
+    unique = list(dict.fromkeys(named))
+    return f"What differs by more than a factor 1.5: {'; '.join(unique)}." if unique else "Nothing differs."
+
+
 def lines(study: dict[str, Any]) -> str:
     """Return the quasi-static cable beside the dynamic line."""
     keys = ("title", "peak_quasi_static", "peak_dynamic", "peak_ratio", "rms_difference", "snaps_matched", "outside")
@@ -78,6 +99,8 @@ def main(folder: Path) -> None:
     fills = {
         "formulation": study["formulation"],
         "counts": ", ".join(f"{value} {key.replace('_', ' ')}" for key, value in study["counts"].items()),
+        "fit": fit_words(stored_fit(study["formulation"])),
+        "misses": misses(study),
         "tables": tables(study),
         "claims": claims(study),
         "variants": variants(study),
