@@ -66,6 +66,18 @@ def test_order_reuse_and_repetition(jobs, tmp_path):
     assert load_part(folder, "second") == {"double": 8}
 
 
+def test_after_only_orders(jobs, tmp_path):
+    """A job that comes after another is not done again for it, and does not ask for it."""
+    make = jobs["first"].function
+    later = {"a": Job(make, (), "one", after=("b",)), "b": Job(make, (), "two")}
+    folder, seen = tmp_path / "both", []
+    run_jobs(later, folder, Settings("published"), lambda title, share: seen.append(title))
+    assert seen == ["two", "one"]
+    (folder / "parts" / "b.json").unlink()
+    assert run_jobs(later, folder, Settings("published")) == {"a": False, "b": True}
+    assert run_jobs({"a": later["a"]}, tmp_path / "one", Settings("published")) == {"a": True}
+
+
 def test_a_failure_keeps_what_was_done(jobs, tmp_path):
     """A job that raises ends the study with its own error; results before it stand."""
     import study_jobs

@@ -46,9 +46,9 @@ def identify(
 ) -> None:
     """Fit what the paper does not publish (fins, hull drag, thrust) to its Tables 3-6 at 6 and 12 m/s.
 
-    Global search, least squares, the set of all that fits nearly as well, and a fit without each table. The stored
-    fits looked at 7 300 vectors in 9 minutes each; the defaults look at 25 000. Writes identified_FORMULATION.json and
-    the vehicle lotte_identified_FORMULATION.toml.
+    Global search, least squares, the set of all that fits nearly as well, and a fit without each table. The
+    defaults look at 25 000 vectors, in 17 to 21 minutes on two cores, as the stored fits did. Writes
+    identified_FORMULATION.json and the vehicle lotte_identified_FORMULATION.toml.
     """
     from tethership.fitting.fit_file import fit_document, fit_text
     from tethership.fitting.identify import Budget

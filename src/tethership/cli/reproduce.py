@@ -109,7 +109,7 @@ def _jobs() -> dict[str, "Job"]:
         "linear": Job(study.linear_part, (), "claims L1-L9"),
         "tables": Job(study.table_part, ("flights",), "tables and claims D1-D11"),
         "terms": Job(study.term_part, ("flights",), "terms"),
-        "linear_pictures": Job(pictures.linear_pictures, (), "figures 6-11"),
+        "linear_pictures": Job(pictures.linear_pictures, (), "figures 6-11", after=("linear",)),
         "variants": Job(study.variant_part, (), "variants"),
         "uncertainty": Job(study.uncertainty_part, (), "uncertainty"),
         "retuned": Job(study.retuned_part, (), "retuned gains"),

@@ -1,9 +1,9 @@
 """Tuning of the control laws' gains over many perturbed flights, under constraints.
 
 Depends on: campaign, scenario, fitting.search. What is asked of a set of gains, over all perturbed flights: no throttle
-saturates, the tension stays below the tear force, the ship docks within 1.1 times the shortest time. Among gains that
-keep all of it, those with the lowest peak tension are looked for, with a little weight on the control's travel and on
-pitch; while none does, what is violated is made less.
+saturates, the tension stays below the tear force, the ship docks within 1.1 times the shortest time. The lowest peak
+tension is looked for, with a little weight on the control's travel and on pitch, and what is violated weighs heavily
+beside it: an exact penalty, so that gains which cannot keep everything are still the better ones of their kind.
 """
 
 import time
@@ -41,11 +41,12 @@ LONGEST = 1.1
 TRAVEL_WEIGHT = 0.05
 """Weight of ADC [s] beside the mean peak over the tear force."""
 
-PITCH_WEIGHT = 0.02
-"""Weight of θ_rms [1/deg] beside the mean peak over the tear force: 5° count as a tenth of it."""
+PITCH_WEIGHT = 0.004
+"""Weight of θ_rms² [1/deg²] beside the mean peak over the tear force: 5° count as a tenth of it, 16° as all of it."""
 
-INFEASIBLE = 10.0
-"""Added to the cost of gains that violate anything, so that they are worse than any that violates nothing."""
+PENALTY = 5.0
+"""Weight of a violation beside the mean peak over the tear force: a fifth of a second of saturation counts as all of
+it."""
 
 Progress = Callable[[str, float, float], None]
 """Called with the stage, the share that is done and the least cost so far."""
@@ -149,9 +150,10 @@ def _judged(flown: dict[str, np.ndarray], tear: float, longest: float) -> Judgem
         + np.mean(np.maximum(span / longest - 1.0, 0.0))
         + 10.0 * np.mean(~docked)
     )
-    wish = np.mean(peak) / tear + TRAVEL_WEIGHT * np.mean(flown["ADC"]) + PITCH_WEIGHT * np.mean(flown["theta_rms"])
-    finite = np.isfinite(violation) and np.isfinite(wish)
-    cost = (INFEASIBLE + violation if violation > 0 else wish) if finite else 1e6
+    wish = (
+        np.mean(peak) / tear + TRAVEL_WEIGHT * np.mean(flown["ADC"]) + PITCH_WEIGHT * np.mean(flown["theta_rms"] ** 2)
+    )
+    cost = wish + PENALTY * violation if np.isfinite(violation) and np.isfinite(wish) else 1e6
     return Judgement(
         float(cost),
         float(np.mean(saturated)),
@@ -177,7 +179,7 @@ def tune(
     seed: int = 1,
     progress: Progress | None = None,
 ) -> Tuning:
-    """Return gains that keep the constraints with the lowest peak tension.
+    """Return gains with the lowest peak tension that keep the constraints, or violate them least.
 
     Parameters
     ----------

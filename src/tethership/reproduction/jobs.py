@@ -51,11 +51,14 @@ class Job(NamedTuple):
         Jobs that come before.
     title : str
         For the progress bar.
+    after : tuple of str
+        Jobs that are done first where they are asked for too: they leave the same programs compiled.
     """
 
     function: Callable[[Path, Settings], dict[str, Any]]
     needs: tuple[str, ...]
     title: str
+    after: tuple[str, ...] = ()
 
 
 Progress = Callable[[str, float], None]
@@ -159,7 +162,8 @@ def _results(jobs: Mapping[str, Job], folder: Path, settings: Settings) -> Itera
     with _pool() as pool:
         while waiting or running:
             for name, job in list(waiting.items()):
-                if all(need in done or need not in jobs for need in job.needs) and len(running) < WORKERS:
+                first = (*job.needs, *job.after)
+                if all(other in done or other not in jobs for other in first) and len(running) < WORKERS:
                     running[pool.submit(job.function, folder, settings)] = name
                     del waiting[name]
             ready, _ = wait(running, return_when=FIRST_COMPLETED)

@@ -145,9 +145,9 @@ def _identification(study: _Study) -> Section:
         ),
     ]
     words.append(
-        "**How blind the rows at 9 m/s are.** Their published numbers are in no file that the fit or this program reads. "
-        "The first fit was frozen before any flight at 9 m/s was computed; it was then searched again, because its "
-        "spectrum had been read in the wrong axes, by the same rows at 6 and 12 m/s and nothing else."
+        "**How blind the rows at 9 m/s are.** Their published numbers are in no file that the fit or this program "
+        "reads. The first fit was frozen before any flight at 9 m/s was computed; it was then searched again, because "
+        "its spectrum had been read in the wrong axes, by the same rows at 6 and 12 m/s and nothing else."
     )
     shown = [tables.parameter_table(fit)]
     if (left := tables.left_out_table(fit)) is not None:
