@@ -60,13 +60,13 @@ def variants(study: dict[str, Any]) -> str:
 
 def fit_words(fit: dict[str, Any]) -> str:
     """Return what the fit found, in words."""
-    left = ", ".join(f"{value:.2f} of Table {name}" for name, value in fit["left_out_misfit"].items())
+    left = ", ".join(f"{value:.2f} ({name})" for name, value in fit["left_out_misfit"].items())
     bound = ", ".join(name.replace("_", " ") for name in fit["at_bound"]) or "none"
     return (
         f"The search looked at {fit['vectors']} vectors; the best has a misfit of {fit['misfit']:.2f} (tables alone "
         f"{fit['tables_misfit']:.2f}; 0.83 is 20 % off in every number). Its spectrum "
         f"{'lacks ' + ', '.join(fit['spectrum_unmet']) if fit['spectrum_unmet'] else 'is the one L1 and L2 describe'}. "
-        f"At a bound: {bound}. Fits that never saw one of the tables have a misfit of {left}."
+        f"At a bound: {bound}. Fits that never saw the flights of one logic miss them by {left}."
     )
 
 

@@ -147,6 +147,7 @@ def solve_points(
     reference: np.ndarray,
     start: np.ndarray,
     per_line: int,
+    usual: Sequence[int] = (),
 ) -> Batch:
     """Return trims and state matrices of many points.
 
@@ -170,11 +171,17 @@ def solve_points(
         Its unknowns.
     per_line : int
         Points of each line, neighbours close to each other.
+    usual : sequence of int
+        Leaves that the program can move although these points do not: sweeps of any of them share it.
     """
-    fixed = tuple(tuple(group) for group in places)
+    leaves = jax.tree.leaves(config)
+    column = {place: i for i, group in enumerate(places) for place in group}
+    every = sorted({*column, *usual})
+    fixed = tuple((place,) for place in every)
 
     def at(where: np.ndarray, begin: np.ndarray) -> Batch:
-        return _in_batches(config, fixed, question, where, begin)
+        own = [where[:, column[p]] if p in column else np.full(len(where), float(leaves[p])) for p in every]
+        return _in_batches(config, fixed, question, np.stack(own, axis=1), begin)
 
     def along(stages: int, chosen: np.ndarray) -> Batch:
         begin = np.repeat(start[None], len(chosen), axis=0)

@@ -1,5 +1,6 @@
 """The points of a sweep: parameters moved along axes, checked, and lines filled up. Depends on: scenario, errors."""
 
+import fnmatch
 import math
 from collections.abc import Mapping, Sequence
 
@@ -15,6 +16,17 @@ Axis = Mapping[str, Sequence[float] | np.ndarray]
 
 MOST_POINTS = 100_000
 """Points of one sweep: its results stay in memory."""
+
+USUAL = (
+    "wind.speed",
+    "trim.elongation",
+    "cables.*.tether_point.0",
+    "cables.*.tether_point.2",
+    "cables.*.diameter",
+    "cables.*.linear_density",
+    "cables.*.length",
+)
+"""Numbers that are swept often: one compiled program serves every choice of them, which spares 10 s of compiling."""
 
 
 def lay_grid(scenario: Scenario, axes: tuple[Axis, ...]) -> tuple[list[Parameter], np.ndarray, tuple[int, ...]]:
@@ -84,3 +96,11 @@ def fill_lines(grid: np.ndarray, count: int, fill: int) -> tuple[np.ndarray, int
     fine = (1.0 - share) * lines[:, before] + share * lines[:, after]
     fine[:, ::fill] = lines
     return fine.reshape(-1, grid.shape[1]), len(places)
+
+
+def usual_places(scenario: Scenario) -> list[int]:
+    """Return the leaves of a scenario's `USUAL` numbers, one by one."""
+    known = list_parameters(scenario.config)
+    single = {name: parameter for name, parameter in known.items() if "*" not in name}
+    chosen = (single[name] for name in single if any(fnmatch.fnmatchcase(name, pattern) for pattern in USUAL))
+    return [place for parameter in chosen for place in parameter.places]

@@ -14,7 +14,7 @@ import numpy as np
 
 from tethership.analysis.continuation import Batch, in_equilibrium, solve_points
 from tethership.analysis.events import find_events
-from tethership.analysis.grid import Axis, fill_lines, lay_grid
+from tethership.analysis.grid import Axis, fill_lines, lay_grid, usual_places
 from tethership.analysis.mode_names import assign, mode_name, slots_of, track_names
 from tethership.analysis.posing import Question, ask
 from tethership.analysis.spectrum import Complex
@@ -181,7 +181,14 @@ def sweep(scenario: Scenario, *axes: Axis) -> Sweep:
     question = ask(scenario)
     reference, start = _reference(scenario, parameters, grid, question)
     batch = solve_points(
-        scenario.config.as_arrays(), [p.places for p in parameters], question, fine, reference, start, per_line
+        scenario.config.as_arrays(),
+        [p.places for p in parameters],
+        question,
+        fine,
+        reference,
+        start,
+        per_line,
+        usual_places(scenario),
     )
     path = _path(batch)
     orders, lines = _followed(path, per_line, shape[:-1])

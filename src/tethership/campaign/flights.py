@@ -22,16 +22,18 @@ from tethership.scenario import Scenario, ScenarioConfig, list_parameters
 from tethership.scenario.build import build_system
 from tethership.scenario.laws import build_law
 from tethership.scenario.parameters import find_parameter, with_values
-from tethership.simulation.batch import STEP, BatchResult, differing, fly_lanes, hoisted, metrics_of
+from tethership.simulation.batch import STEP, differing, fly_lanes, hoisted, metrics_of
 from tethership.simulation.closed_loop import ClosedLoop
 from tethership.simulation.docking import moved_start, stop_conditions
-from tethership.simulation.events import StopConditions
 
 BATCH = 192
 """Flights of one compiled call: fixed, so that every campaign runs the same program."""
 
 FEW = 24
 """The same where there are no more than twice as many."""
+
+QUICKLY = {"xla_backend_optimization_level": 0}
+"""How the trims of `FEW` flights are compiled: in half the time. The flights themselves would be four times slower."""
 
 SWITCHES = {
     "rewind": ("control.rewind.gain",),
@@ -79,8 +81,7 @@ def layer_switches(scenario: Scenario, layers: Sequence[str]) -> dict[str, float
     return {name: known[name].value if layer in layers else 0.0 for layer, names in SWITCHES.items() for name in names}
 
 
-@eqx.filter_jit
-def _prepared(
+def _prepare(
     config: ScenarioConfig,
     places: tuple[tuple[int, ...], ...],
     question: Question,
@@ -110,17 +111,8 @@ def _prepared(
     return eqx.combine(loops, static), vectors, left
 
 
-@eqx.filter_jit
-def _flown(
-    loops: ClosedLoop,
-    axes: ClosedLoop,
-    stop: StopConditions,
-    limits: Float[Array, "limits"],
-    vectors: Float[Array, "n flights"],
-    time_limit: Float[Array, ""],
-    step: Float[Array, ""],
-) -> BatchResult:
-    return fly_lanes(loops, axes, stop, limits, vectors, time_limit, step)
+_prepared, _prepared_few = eqx.filter_jit(_prepare), eqx.filter_jit(_prepare, compiler_options=QUICKLY)
+_flown = eqx.filter_jit(fly_lanes)
 
 
 def fly_cases(
@@ -172,14 +164,14 @@ def fly_cases(
     time_limit, length = jnp.asarray(scenario.config.stop.time_limit), jnp.asarray(step)
 
     count = len(cases.values)
-    size = FEW if count <= 2 * FEW else BATCH
+    size, prepared = (FEW, _prepared_few) if count <= 2 * FEW else (BATCH, _prepared)
     probe = np.repeat(cases.values[:1], size, axis=0)
     probe[1::2] = 1.01 * probe[1::2] + 1e-3
-    differ = differing(_prepared(config, places, question, jnp.asarray(probe.T), start)[0])
+    differ = differing(prepared(config, places, question, jnp.asarray(probe.T), start)[0])
 
     def batch(rows: np.ndarray) -> dict[str, np.ndarray]:
         values = jnp.asarray(cases.values[rows].T)
-        loops, vectors, left = _prepared(config, places, question, values, start)
+        loops, vectors, left = prepared(config, places, question, values, start)
         held, axes = hoisted(loops, differ)
         result = _flown(held, axes, stop, limits, vectors, time_limit, length)
         return {**metrics_of(result), "unbalanced": np.asarray(left)}

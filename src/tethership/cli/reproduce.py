@@ -107,16 +107,16 @@ def _jobs() -> dict[str, "Job"]:
     return {
         "flights": Job(study.fly_part, (), "flights"),
         "linear": Job(study.linear_part, (), "claims L1-L9"),
-        "tables": Job(study.table_part, ("flights",), "tables and claims D1-D11"),
+        "cable": Job(study.cable_part, ("flights",), "dynamic cable"),
         "terms": Job(study.term_part, ("flights",), "terms"),
-        "linear_pictures": Job(pictures.linear_pictures, (), "figures 6-11", after=("linear",)),
         "variants": Job(study.variant_part, (), "variants"),
         "uncertainty": Job(study.uncertainty_part, (), "uncertainty"),
-        "retuned": Job(study.retuned_part, (), "retuned gains"),
-        "cable": Job(study.cable_part, ("flights",), "dynamic cable"),
+        "linear_pictures": Job(pictures.linear_pictures, (), "figures 6-11", after=("linear",)),
+        "retuned": Job(study.retuned_part, (), "retuned gains", after=("uncertainty",)),
         "docking_pictures": Job(pictures.docking_pictures, ("flights",), "figures 12-15"),
-        "fit_pictures": Job(pictures.fit_pictures, (), "identification"),
+        "tables": Job(study.table_part, ("flights",), "tables and claims D1-D11"),
         "line_pictures": Job(pictures.line_pictures, ("cable",), "dynamic cable, pictures"),
+        "fit_pictures": Job(pictures.fit_pictures, (), "identification"),
     }
 
 

@@ -89,7 +89,7 @@ def source_digest() -> str:
 def run_jobs(
     jobs: Mapping[str, Job], folder: Path, settings: Settings, progress: Progress | None = None, fresh: bool = False
 ) -> dict[str, bool]:
-    """Do jobs in the order of their needs, two at a time, and return which were done anew.
+    """Do jobs in their order as far as their needs allow, two at a time, and return which were done anew.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def run_jobs(
     for name in _ordered(jobs):
         remade = any(anew.get(need, False) for need in jobs[name].needs)
         anew[name] = fresh or remade or not _stands(folder, name, keys[name])
-    todo = {name: jobs[name] for name, again in anew.items() if again}
+    todo = {name: job for name, job in jobs.items() if anew[name]}
     finished = len(jobs) - len(todo)
     if todo:
         for name, result in _results(todo, folder, settings):
