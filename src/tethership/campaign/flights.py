@@ -32,9 +32,6 @@ BATCH = 192
 FEW = 24
 """The same where there are no more than twice as many."""
 
-QUICKLY = {"xla_backend_optimization_level": 0}
-"""How the trims of `FEW` flights are compiled: in half the time. The flights themselves would be four times slower."""
-
 SWITCHES = {
     "rewind": ("control.rewind.gain",),
     "heading": ("control.heading.gain",),
@@ -81,7 +78,8 @@ def layer_switches(scenario: Scenario, layers: Sequence[str]) -> dict[str, float
     return {name: known[name].value if layer in layers else 0.0 for layer, names in SWITCHES.items() for name in names}
 
 
-def _prepare(
+@eqx.filter_jit
+def _prepared(
     config: ScenarioConfig,
     places: tuple[tuple[int, ...], ...],
     question: Question,
@@ -111,7 +109,6 @@ def _prepare(
     return eqx.combine(loops, static), vectors, left
 
 
-_prepared, _prepared_few = eqx.filter_jit(_prepare), eqx.filter_jit(_prepare, compiler_options=QUICKLY)
 _flown = eqx.filter_jit(fly_lanes)
 
 
@@ -164,14 +161,14 @@ def fly_cases(
     time_limit, length = jnp.asarray(scenario.config.stop.time_limit), jnp.asarray(step)
 
     count = len(cases.values)
-    size, prepared = (FEW, _prepared_few) if count <= 2 * FEW else (BATCH, _prepared)
+    size = FEW if count <= 2 * FEW else BATCH
     probe = np.repeat(cases.values[:1], size, axis=0)
     probe[1::2] = 1.01 * probe[1::2] + 1e-3
-    differ = differing(prepared(config, places, question, jnp.asarray(probe.T), start)[0])
+    differ = differing(_prepared(config, places, question, jnp.asarray(probe.T), start)[0])
 
     def batch(rows: np.ndarray) -> dict[str, np.ndarray]:
         values = jnp.asarray(cases.values[rows].T)
-        loops, vectors, left = prepared(config, places, question, values, start)
+        loops, vectors, left = _prepared(config, places, question, values, start)
         held, axes = hoisted(loops, differ)
         result = _flown(held, axes, stop, limits, vectors, time_limit, length)
         return {**metrics_of(result), "unbalanced": np.asarray(left)}

@@ -172,20 +172,21 @@ def retuned_part(folder: Path, settings: Settings) -> dict[str, Any]:
         nominal = {key: flight.metrics[key] for key in ("tension_max", "tension_mean", "ADC", "E", "theta_rms")}
         nominal |= {"docking_time": flight.docking_time, "outcome": flight.outcome.name}
         rows.append({"name": name, "nominal": nominal, "perturbed": judged._asdict()})
-    return {"rows": rows, "flights": settings.flights, "words": _verdict(rows[1]["perturbed"], tuned.formulation)}
+    gain = known["control.heading.gain"].value
+    return {"rows": rows, "flights": settings.flights, "words": _verdict(rows[1]["perturbed"], tuned.formulation, gain)}
 
 
-def _verdict(judged: dict[str, Any], formulation: str) -> str:
-    """Return in words whether the constraints are kept."""
+def _verdict(judged: dict[str, Any], formulation: str, heading_gain: float) -> str:
+    """Return in words whether the constraints are kept, for a gain of the heading layer [1/rad]."""
     limits = {"saturated": "saturate a throttle", "torn": "pass the tear force", "late": "dock too late"}
     broken = [f"{100 * judged[key]:.0f} % {words}" for key, words in limits.items() if judged[key] > 0]
     said = f"The gains were tuned in the formulation {formulation}. "
     if not broken:
         return said + "They keep every constraint in every perturbed flight."
     return said + (
-        f"No gains were found that keep every constraint in every perturbed flight: {', '.join(broken)} (saturated for "
-        f"{judged['saturated_seconds']:.2f} s on average). To turn 10° of misalignment before the cable is taut takes "
-        "a heading gain that saturates the side thrusters at once; gains that do not, snap the cable."
+        f"No gains were found that keep every constraint in every perturbed flight: {', '.join(broken)}. A "
+        f"throttle is saturated for {judged['saturated_seconds']:.2f} s on average, in the first turn: 10° of "
+        f"misalignment ask for {heading_gain * np.sin(np.radians(10.0)):.1f} times full thrust of the side thrusters."
     )
 
 
