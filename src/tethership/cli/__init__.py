@@ -69,7 +69,9 @@ def main() -> None:
         spoken = getattr(error, "format_message", None)
         if spoken is None:
             raise
-        _fail(f"{spoken()} (tethership --help shows what is allowed)", WRONG_INPUT)
+        context = getattr(error, "ctx", None)
+        command = "tethership" if context is None else context.command_path
+        _fail(f"{spoken()} ({command} --help shows what is allowed)", WRONG_INPUT)
     else:
         if code == INTERRUPTED:
             _fail("interrupted; what was not written yet is lost", NO_ANSWER)

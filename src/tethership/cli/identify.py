@@ -140,7 +140,7 @@ def _print(document: dict[str, Any]) -> None:
         *[(f"misfit of {name} left out", f"{value:.3f}", "") for name, value in document["left_out_misfit"].items()],
         ("vectors looked at", str(document["vectors"]), ""),
     ]
-    table(rows, "quality (0 is agreement; 0.83 is 20 % off in every number)")
+    table(rows, "quality (0 is agreement; 0.83 is one tolerance off in every number)")
     if document["spectrum_unmet"]:
         typer.echo(f"The best vector's free ship does not have: {', '.join(document['spectrum_unmet'])}")
     for path in document["files"]:

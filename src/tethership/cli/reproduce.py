@@ -37,7 +37,10 @@ ITEMS: dict[str, tuple[str, ...]] = {
 def reproduce(
     only: Annotated[
         str | None,
-        typer.Option(help="Parts, by commas: table3 … table6, figure6 … figure15, L1 … L9, D1 … D11, claims, …"),
+        typer.Option(
+            help="Parts, by commas: table3 … table6, figure6 … figure15, L1 … L9, D1 … D11, claims, identification, "
+            "variants, cable, terms, uncertainty, retuned."
+        ),
     ] = None,
     formulation: Annotated[
         str | None, typer.Option(help="published or consistent. Default: that of docking_paper, which fits better.")

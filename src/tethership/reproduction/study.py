@@ -20,6 +20,7 @@ from tethership.reproduction.docking_claims import check_docking_claims
 from tethership.reproduction.flights_read import WINDS, FlightKey
 from tethership.reproduction.jobs import Settings
 from tethership.reproduction.line_comparison import compare_line
+from tethership.reproduction.line_words import line_words
 from tethership.reproduction.linear_claims import CLAIMS
 from tethership.reproduction.moordyn_line import load_moordyn
 from tethership.reproduction.tables import compare, paper_tables
@@ -27,7 +28,6 @@ from tethership.reproduction.terms import load_breakdown, switch_off
 from tethership.reproduction.uncertainty import uncertainty
 from tethership.scenario import Scenario, list_parameters, load_scenario
 from tethership.simulation import Flight, dock
-from tethership.simulation.quasi_static import MEMORY, TRUSTED
 
 GROUND_EFFECT = 0.01
 """Coefficient of the ground effect of claim D7 [1/m], vertical wind per ground speed and height: not published."""
@@ -179,7 +179,7 @@ def retuned_part(folder: Path, settings: Settings) -> dict[str, Any]:
 def _verdict(judged: dict[str, Any], formulation: str, heading_gain: float) -> str:
     """Return in words whether the constraints are kept, for a gain of the heading layer [1/rad]."""
     limits = {"saturated": "saturate a throttle", "torn": "pass the tear force", "late": "dock too late"}
-    broken = [f"{100 * judged[key]:.0f} % {words}" for key, words in limits.items() if judged[key] > 0]
+    broken = [f"{100 * judged[key]:.3g} % {words}" for key, words in limits.items() if judged[key] > 0]
     said = f"The gains were tuned in the formulation {formulation}. "
     if not broken:
         return said + "They keep every constraint in every perturbed flight."
@@ -209,38 +209,4 @@ def cable_part(folder: Path, settings: Settings) -> dict[str, Any]:
             own = formulation == settings.formulation and path.exists()
             flight = Flight.load(path) if own else dock(scenario, trim(scenario), TABLES[table])
             cases[f"{formulation}_{table}_{wind:g}"] = compare_line(flight, f"{law}, {table}, {wind:g} m/s")
-    return {"cases": cases, "words": _line_words(cases)}
-
-
-def _line_words(cases: dict[str, Any]) -> list[str]:
-    """Return what the comparison says, with its numbers."""
-    snapping = [case for name, case in cases.items() if case["snaps_quasi_static"]]
-    of = {law: [c for c in snapping if c["title"].startswith(law)] for law in ("the paper's", "elastic")}
-    words = [
-        "Each cable was flown again as a line of MoorDyn whose upper end, winch and air are those of the recorded "
-        "flight. The motion is prescribed, so the line shows what tension it asks for, not how the flight would have "
-        "gone on."
-    ]
-    for law, name in (
-        ("elastic", "elastic catenary"),
-        ("the paper's", "paper's cable, whose joint pulls from e = 0.99 on"),
-    ):
-        ratios = [case["peak_ratio"] for case in of[law]]
-        if ratios:
-            words.append(
-                f"With the {name}, the quasi-static peak is {min(ratios):.2f} to {max(ratios):.2f} times the line's in "
-                "the flights that snap."
-            )
-    trusted, untrusted = (
-        [case[key]["median"] for case in of["elastic"] if case[key]["median"] is not None]
-        for key in ("trusted", "untrusted")
-    )
-    if trusted and untrusted:
-        worst = max(case["worst_trusted"] for case in of["elastic"])
-        words.append(
-            f"Quasi-static tension may be trusted where κ = |dT/dt|/(T ω₁) stayed below {TRUSTED:g} for {MEMORY:g} s, "
-            f"ω₁ being the cable's first transverse mode: the median difference is {100 * min(trusted):.0f} to "
-            f"{100 * max(trusted):.0f} % there, {worst:.0f} N at most, and {100 * min(untrusted):.0f} "
-            f"to {100 * max(untrusted):.0f} % elsewhere. A flight that leaves that range says so."
-        )
-    return words
+    return {"cases": cases, "words": line_words(cases)}

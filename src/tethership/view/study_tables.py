@@ -112,8 +112,10 @@ def variant_table(part: Mapping[str, Any]) -> Table:
         cells.append([row["name"], row["question"], row["misfit"], row["refitted"], words if row["question"] else ""])
     heads = ["reading", "what the print leaves open", "misfit, same ship", "misfit, fitted anew", "than identified"]
     note = (
-        "Misfit to the tables: 0 is agreement, 0.83 is 20 % off in every number. Fitted anew is a short search from "
-        "the identified set, stored, and flown again in this run; the first row shows what it does by itself."
+        "Misfit to the tables: 0 is agreement, 0.83 is one tolerance off in every number (20 %, times over a threshold "
+        "65 %). Fitted anew is a short search from the identified set, for tables and spectrum together, stored, and "
+        "flown "
+        "again in this run; the first row shows what it does by itself."
     )
     return Table("Readings that the print leaves open.", heads, cells, note, label="variants")
 
