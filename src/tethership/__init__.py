@@ -49,6 +49,7 @@ if TYPE_CHECKING:
         sweep,
         trim,
     )
+    from tethership.campaign import Campaign, open_results, run_campaign
     from tethership.control import AbstractLaw, Correction, Measurement
     from tethership.reproduction import check_claims, linear_figure
     from tethership.scenario import Scenario, list_packaged, list_parameters, load_scenario, scenario_at
@@ -57,6 +58,7 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "AbstractLaw": "control",
+    "Campaign": "campaign",
     "Correction": "control",
     "Flight": "simulation",
     "LinearModel": "analysis",
@@ -77,9 +79,11 @@ _HOMES = {
     "list_packaged": "scenario",
     "list_parameters": "scenario",
     "load_scenario": "scenario",
+    "open_results": "campaign",
     "plot_docking": "view",
     "plot_linear_figure": "view",
     "plot_root_locus": "view",
+    "run_campaign": "campaign",
     "scenario_at": "scenario",
     "sensitivities": "analysis",
     "sweep": "analysis",
@@ -88,6 +92,7 @@ _HOMES = {
 
 _PARTS = (
     "analysis",
+    "campaign",
     "control",
     "physics",
     "reproduction",
@@ -101,6 +106,7 @@ _PARTS = (
 
 __all__ = [
     "AbstractLaw",
+    "Campaign",
     "ConfigError",
     "Correction",
     "Flight",
@@ -125,9 +131,11 @@ __all__ = [
     "list_packaged",
     "list_parameters",
     "load_scenario",
+    "open_results",
     "plot_docking",
     "plot_linear_figure",
     "plot_root_locus",
+    "run_campaign",
     "scenario_at",
     "sensitivities",
     "sweep",

@@ -80,7 +80,7 @@ def comparable_coordinates(plant: TetheredAirship, state: Float[Array, "12"]) ->
     """
 
     def coordinates(vector: Float[Array, "12"]) -> Float[Array, "12"]:
-        wind = plant.environment.wind_at(vector[9:12], jnp.zeros(()))
+        wind = plant.environment.without_fluctuations().wind_at(vector[9:12], jnp.zeros(()))
         return vector.at[:3].add(-rotation_matrix(vector[6:9]).T @ wind)
 
     reach = 0.5 * plant.ship.outline.station[-1]

@@ -30,12 +30,12 @@ def input_vector(plant: TetheredAirship, command: Command) -> Float[Array, "inpu
 def unpack_inputs(
     plant: TetheredAirship, inputs: Float[Array, "inputs"]
 ) -> tuple[TetheredAirship, Command, Float[Array, "cables"]]:
-    """Return the plant with the wind changed, the command and the lengths of the cables [m]."""
+    """Return the plant with the mean wind changed, the command and the lengths of the cables [m]."""
     thrusters, fins = plant.ship.thrusters.count, plant.ship.fins.count
     after = thrusters + fins
     command = Command(inputs[:thrusters], inputs[thrusters:after])
     change = WindChange(inputs[after : after + 3], inputs[after + 3 : after + 6])
-    environment = dataclasses.replace(plant.environment, gusts=(*plant.environment.gusts, change))
+    environment = dataclasses.replace(plant.environment, gusts=(*plant.environment.gusts, change), fluctuations=())
     return dataclasses.replace(plant, environment=environment), command, inputs[after + 6 :]
 
 

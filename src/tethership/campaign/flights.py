@@ -112,6 +112,78 @@ def _prepared(
 _flown = eqx.filter_jit(fly_lanes)
 
 
+class Flyer:
+    """Flies cases of one scenario, a batch at a time; every call with as many lanes runs the same program.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What all cases have in common; all its control layers act (see `layer_switches`).
+    names : sequence of str
+        Dotted names of what differs.
+    example : ndarray
+        Values [SI] of one case, shape (names,).
+    lanes : int
+        Flights of one call.
+    step : float
+        Length of a step h [s].
+    unbreakable : bool
+        Let a flight go on beyond the cable's breaking force, as a fit needs it.
+
+    Raises
+    ------
+    ConfigError
+        A parameter does not exist or is named twice.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        names: Sequence[str],
+        example: np.ndarray,
+        lanes: int = BATCH,
+        step: float = STEP,
+        unbreakable: bool = False,
+    ) -> None:
+        known = list_parameters(scenario.config)
+        parameters = [find_parameter(known, name, scenario.name) for name in names]
+        self._places = tuple(parameter.places for parameter in parameters)
+        flat = [place for group in self._places for place in group]
+        if len(set(flat)) != len(flat):
+            raise ConfigError(f"two of {', '.join(names)} are the same number; name each once")
+        config = scenario.config.as_arrays()
+        self._config = _unbreakable(config) if unbreakable else config
+        self._question = ask(scenario)
+        self._start = jnp.zeros(len(self._question.unknowns.effort))
+        self._stop = stop_conditions(scenario)
+        self._limits = jnp.asarray(scenario.config.watched_tensions())
+        self._time_limit, self._step = jnp.asarray(scenario.config.stop.time_limit), jnp.asarray(step)
+        self.lanes = lanes
+        self._differ = differing(self._prepare(_probe(example, lanes))[0])
+
+    def _prepare(self, values: np.ndarray) -> tuple[ClosedLoop, Array, Array]:
+        """Return loops, starts and what the trims left, for values of shape (lanes, names)."""
+        return _prepared(self._config, self._places, self._question, jnp.asarray(values.T), self._start)
+
+    def fly(self, values: np.ndarray) -> dict[str, np.ndarray]:
+        """Return the metrics of at most `lanes` cases, values [SI] of shape (cases, names), as `fly_cases` does."""
+        count = len(values)
+        padded = np.concatenate([values, np.repeat(values[-1:], self.lanes - count, axis=0)])
+        loops, vectors, left = self._prepare(padded)
+        held, axes = hoisted(loops, self._differ)
+        result = _flown(held, axes, self._stop, self._limits, vectors, self._time_limit, self._step)
+        found = {**metrics_of(result), "unbalanced": np.asarray(left)}
+        return {name: array[:count] for name, array in found.items()}
+
+
+def _probe(example: np.ndarray, lanes: int) -> np.ndarray:
+    """Return cases that differ in every number: by a little, and by one, for a seed is a whole number."""
+    probe = np.repeat(example[None], lanes, axis=0)
+    probe[1::3] = 1.01 * probe[1::3] + 1e-3
+    probe[2::3] += 1.0
+    return probe
+
+
 def fly_cases(
     scenario: Scenario,
     cases: Cases,
@@ -132,7 +204,7 @@ def fly_cases(
     progress : callable, optional
         Called after every batch.
     unbreakable : bool
-        Let a flight go on beyond the cable's breaking force, as a fit needs it.
+        As in `Flyer`.
 
     Returns
     -------
@@ -145,44 +217,19 @@ def fly_cases(
     ConfigError
         A parameter does not exist or is named twice.
     """
-    known = list_parameters(scenario.config)
-    parameters = [find_parameter(known, name, scenario.name) for name in cases.names]
-    places = tuple(parameter.places for parameter in parameters)
-    flat = [place for group in places for place in group]
-    if len(set(flat)) != len(flat):
-        raise ConfigError(f"two of {', '.join(cases.names)} are the same number; name each once")
-    config = scenario.config.as_arrays()
-    question = ask(scenario)
-    start = jnp.zeros(len(question.unknowns.effort))
-    stop = stop_conditions(scenario)
-    limits = jnp.asarray(scenario.config.watched_tensions())
-    if unbreakable:
-        config = _unbreakable(config)
-    time_limit, length = jnp.asarray(scenario.config.stop.time_limit), jnp.asarray(step)
-
     count = len(cases.values)
     size = FEW if count <= 2 * FEW else BATCH
-    probe = np.repeat(cases.values[:1], size, axis=0)
-    probe[1::2] = 1.01 * probe[1::2] + 1e-3
-    differ = differing(_prepared(config, places, question, jnp.asarray(probe.T), start)[0])
-
-    def batch(rows: np.ndarray) -> dict[str, np.ndarray]:
-        values = jnp.asarray(cases.values[rows].T)
-        loops, vectors, left = _prepared(config, places, question, values, start)
-        held, axes = hoisted(loops, differ)
-        result = _flown(held, axes, stop, limits, vectors, time_limit, length)
-        return {**metrics_of(result), "unbalanced": np.asarray(left)}
-
-    chunks = [np.minimum(np.arange(first, first + size), count - 1) for first in range(0, count, size)]
+    flyer = Flyer(scenario, cases.names, cases.values[0], size, step, unbreakable)
+    chunks = [cases.values[first : first + size] for first in range(0, count, size)]
     done = 0
     found: list[dict[str, np.ndarray]] = []
     with ThreadPoolExecutor(max_workers=min(2, os.cpu_count() or 1)) as pool:
-        for result in pool.map(batch, chunks):
+        for result in pool.map(flyer.fly, chunks):
             found.append(result)
             done = min(done + size, count)
             if progress is not None:
                 progress(done, count)
-    return {name: np.concatenate([part[name] for part in found])[:count] for name in found[0]}
+    return {name: np.concatenate([part[name] for part in found]) for name in found[0]}
 
 
 def fly_blocks(scenario: Scenario, blocks: Sequence[Cases], unbreakable: bool = False) -> list[dict[str, np.ndarray]]:

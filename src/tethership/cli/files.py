@@ -7,7 +7,7 @@ import typer
 
 from tethership.cli.common import JsonOption, print_json
 from tethership.errors import ConfigError
-from tethership.scenario.load import check_file, describe_packaged, packaged_text
+from tethership.scenario.load import check_file, describe_packaged, packaged_text, read_document
 
 LIST_EXAMPLE = "Example: tethership list"
 VALIDATE_EXAMPLE = "Example: tethership validate my_docking.toml"
@@ -15,7 +15,7 @@ NEW_EXAMPLE = "Example: tethership new my_docking"
 
 
 def list_(json: JsonOption = False) -> None:
-    """List the packaged scenarios, vehicles and solver settings."""
+    """List the packaged scenarios, vehicles, solver settings and campaigns."""
     found = describe_packaged()
     if json:
         print_json(found)
@@ -27,15 +27,25 @@ def list_(json: JsonOption = False) -> None:
 
 
 def validate(
-    file: Annotated[str, typer.Argument(help="A scenario, vehicle or solver file that ends in .toml.")],
+    file: Annotated[str, typer.Argument(help="A scenario, vehicle, solver or campaign file that ends in .toml.")],
     json: JsonOption = False,
 ) -> None:
     """Check a file: every key, unit and value, and whether the parts fit together."""
-    kind = check_file(file)
+    kind = _checked(file)
     if json:
         print_json({"file": file, "valid": True, "kind": kind})
     else:
         typer.echo(f"{file}: a valid {kind}")
+
+
+def _checked(file: str) -> str:
+    """Return what a file is after checking all of it; a campaign's cases are drawn, none is flown."""
+    if "vary" not in read_document("scenarios", file):
+        return check_file(file)
+    from tethership.campaign import make_plan
+
+    make_plan(file)
+    return "campaign"
 
 
 def new(

@@ -28,7 +28,7 @@ class AbstractGust(eqx.Module):
 
 
 class CosineGust(AbstractGust):
-    """One pulse in a fixed direction.
+    """One pulse, whose direction may turn about the vertical while it lasts.
 
     Attributes
     ----------
@@ -38,16 +38,22 @@ class CosineGust(AbstractGust):
         Time at which it begins t₀ [s].
     period : float
         Its duration T [s].
+    turn : float
+        Angle by which it turns in that time [rad], clockwise seen from above; `amplitude` is its vector at the start.
     """
 
     amplitude: Float[Array, "3"]
     start: Float[Array, ""]
     period: Float[Array, ""]
+    turn: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.zeros(()))
 
     def velocity(self, time: Float[Array, ""]) -> Float[Array, "3"]:
         """Return the velocity added to the wind [m/s], ground axes, at time t [s]; C¹ in t."""
         phase = jnp.clip((time - self.start) / self.period, 0.0, 1.0)
-        return 0.5 * self.amplitude * (1.0 - jnp.cos(2.0 * jnp.pi * phase))
+        north, east, down = self.amplitude
+        cosine, sine = jnp.cos(self.turn * phase), jnp.sin(self.turn * phase)
+        turned = jnp.stack([cosine * north - sine * east, sine * north + cosine * east, down])
+        return 0.5 * turned * (1.0 - jnp.cos(2.0 * jnp.pi * phase))
 
     def corners(self) -> Float[Array, "2"]:
         """Return the two times [s] at which its second derivative jumps, for the integrator to step on."""

@@ -1,7 +1,7 @@
 """Scenarios: from TOML files to a validated system, its laws and its run settings."""
 
 from tethership.scenario.load import Scenario, list_packaged, load_scenario, read_solver
-from tethership.scenario.parameters import Parameter, list_parameters, scenario_at
+from tethership.scenario.parameters import Parameter, check_values, find_parameter, list_parameters, scenario_at
 from tethership.scenario.schema import ScenarioConfig
 from tethership.scenario.solver import SolverConfig
 from tethership.scenario.vehicle_schema import VehicleConfig
@@ -12,6 +12,8 @@ __all__ = [
     "ScenarioConfig",
     "SolverConfig",
     "VehicleConfig",
+    "check_values",
+    "find_parameter",
     "list_packaged",
     "list_parameters",
     "load_scenario",

@@ -7,76 +7,17 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from tethership.physics.atmosphere import AbstractAtmosphere, ConstantAtmosphere, StandardAtmosphere
 from tethership.physics.cable import AbstractTensionLaw, CableLoad, ElasticCatenary, PublishedTension
-from tethership.physics.ground_effect import GroundEffect
-from tethership.physics.gust import AbstractGust, BareCosine, CosineGust, RepeatedCosine
 from tethership.physics.winch import Winch
-from tethership.physics.wind import AbstractWind, PowerLawWind, UniformWind
+from tethership.scenario.build_air import build_environment
 from tethership.scenario.build_ship import build_hull, build_ship, slice_integrals
 from tethership.scenario.schema import (
     CableConfig,
-    ConstantAir,
-    GustConfig,
-    PowerLawWindConfig,
     ScenarioConfig,
-    UniformWindConfig,
 )
-from tethership.spatial import STANDARD_GRAVITY
-from tethership.system import Cable, Environment, TetheredAirship
+from tethership.system import Cable, TetheredAirship
 
 __all__ = ["assemble", "build_environment", "build_hull", "build_ship", "build_system", "slice_integrals"]
-
-
-def direction_from(azimuth: Float[Array, ""], upward: Float[Array, ""] | float = 0.0) -> Float[Array, "3"]:
-    """Return the unit vector, ground axes, of air that comes *from* an azimuth [rad] and rises at an angle [rad]."""
-    level = jnp.cos(upward)
-    return jnp.stack([-level * jnp.cos(azimuth), -level * jnp.sin(azimuth), -jnp.sin(jnp.asarray(upward))])
-
-
-def _wind(config: UniformWindConfig | PowerLawWindConfig, ground: Float[Array, ""]) -> AbstractWind:
-    velocity = config.speed * direction_from(jnp.asarray(config.from_direction))
-    if isinstance(config, UniformWindConfig):
-        return UniformWind(velocity)
-    return PowerLawWind(
-        velocity,
-        jnp.asarray(config.reference_height),
-        jnp.asarray(config.exponent),
-        jnp.asarray(config.lowest_height),
-        ground,
-    )
-
-
-GUSTS = {"one_minus_cosine": CosineGust, "repeated": RepeatedCosine, "cosine": BareCosine}
-"""Gusts by the shape that a file names."""
-
-
-def _gust(config: GustConfig, wind_speed: float) -> AbstractGust:
-    peak = config.speed if config.fraction is None else config.fraction * wind_speed
-    direction = direction_from(jnp.asarray(config.from_direction), jnp.asarray(config.upward_angle))
-    return GUSTS[config.shape](jnp.asarray(peak) * direction, jnp.asarray(config.start), jnp.asarray(config.period))
-
-
-def build_environment(config: ScenarioConfig) -> Environment:
-    """Return air, wind, gusts and ground."""
-    air: AbstractAtmosphere
-    if isinstance(config.atmosphere, ConstantAir):
-        air = ConstantAtmosphere(jnp.asarray(config.atmosphere.density))
-    else:
-        air = StandardAtmosphere(
-            jnp.asarray(config.atmosphere.origin_altitude), jnp.asarray(config.atmosphere.temperature_offset)
-        )
-    height = config.ground.anchor_height
-    ground = jnp.asarray(0.0 if height is None else height)
-    effect = config.ground.effect_coefficient
-    return Environment(
-        gravity=jnp.array([0.0, 0.0, STANDARD_GRAVITY]),
-        atmosphere=air,
-        wind=_wind(config.wind, ground),
-        gusts=tuple(_gust(gust, config.wind.speed) for gust in config.gusts),
-        ground_effect=None if effect is None else GroundEffect(jnp.asarray(effect), ground),
-        ground=ground,
-    )
 
 
 def _cable(config: CableConfig, formulation: str, shift: Float[Array, "3"]) -> Cable:

@@ -22,6 +22,7 @@ from tethership.scenario.quantity import Table
 from tethership.scenario.schema import ScenarioConfig
 from tethership.scenario.solver import SolverConfig
 from tethership.scenario.vehicle_schema import VehicleConfig
+from tethership.scenario.wind_file import expand_wind_file
 from tethership.system import TetheredAirship
 
 ModelType = TypeVar("ModelType", bound=Table)
@@ -88,6 +89,10 @@ class Scenario:
         return from_document(self.document, self.name, changes)
 
 
+KINDS = ("scenarios", "vehicles", "solvers", "campaigns")
+"""What is packaged, by folder."""
+
+
 def _packaged(folder: str) -> dict[str, Any]:
     """Return the packaged files of a folder of `data`, by name."""
     root = resources.files("tethership") / "data" / folder
@@ -95,8 +100,8 @@ def _packaged(folder: str) -> dict[str, Any]:
 
 
 def list_packaged() -> dict[str, list[str]]:
-    """Return the names of the packaged scenarios, vehicles and solvers."""
-    return {kind: sorted(_packaged(kind)) for kind in ("scenarios", "vehicles", "solvers")}
+    """Return the names of the packaged scenarios, vehicles, solvers and campaigns."""
+    return {kind: sorted(_packaged(kind)) for kind in KINDS}
 
 
 def packaged_text(folder: str, name: str) -> str:
@@ -121,6 +126,11 @@ def _read(folder: str, name: str, base: Path | None = None) -> tuple[Document, s
         reason = error.strerror if isinstance(error, OSError) and error.strerror else "it is not a text file"
         raise ConfigError(f"cannot read {path}: {reason}") from error
     return _parsed(text, str(path)), str(path)
+
+
+def read_document(folder: str, name: str) -> Document:
+    """Return the document of a packaged file by name, or of a path that ends in `.toml`; errors as `load_scenario`."""
+    return _read(folder, name)[0]
 
 
 def _parsed(text: str, origin: str) -> Document:
@@ -158,9 +168,10 @@ def load_scenario(name: str = "docking", changes: Mapping[str, Any] | None = Non
     if isinstance((changes or {}).get("vehicle"), str):
         document["vehicle"] = (changes or {})["vehicle"]
         changes = {key: value for key, value in (changes or {}).items() if key != "vehicle"}
+    base = Path(origin).parent if origin.endswith(".toml") else None
+    expand_wind_file(document, base, origin)
     vehicle = document.get("vehicle")
     if isinstance(vehicle, str):
-        base = Path(origin).parent if origin.endswith(".toml") else None
         document["vehicle"], vehicle_origin = _read("vehicles", vehicle, base)
         validated(VehicleConfig, document["vehicle"], vehicle_origin)
     own_changes = document.pop("changes", {})
@@ -198,7 +209,7 @@ def document_text(document: Document) -> str:
 def describe_packaged() -> dict[str, dict[str, str]]:
     """Return what is packaged: kind → name → one line."""
     found: dict[str, dict[str, str]] = {}
-    for kind in ("scenarios", "vehicles", "solvers"):
+    for kind in KINDS:
         documents = {name: _parsed(packaged_text(kind, name), name) for name in sorted(_packaged(kind))}
         found[kind] = {name: d.get("description") or d.get("title", "") for name, d in documents.items()}
     return found

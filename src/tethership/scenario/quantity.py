@@ -104,6 +104,8 @@ class Quantity:
         It must be above zero.
     sourced : bool
         `source` must be given too (vehicles).
+    array : bool
+        It becomes one array: samples, not parameters of their own.
     """
 
     unit: str
@@ -112,6 +114,7 @@ class Quantity:
     high: float | None = None
     positive: bool = False
     sourced: bool = False
+    array: bool = False
 
     def __get_pydantic_core_schema__(self, kind: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
         checked = core_schema.no_info_after_validator_function(self._check, handler(kind))
@@ -135,7 +138,8 @@ class Quantity:
         if unknown or missing:
             what = f"unknown {sorted(unknown)}" if unknown else f"missing {sorted(missing)}"
             raise ValueError(f"{what}; write {self.form}")
-        return self._nested(datum["value"], str(datum["unit"]), self.depth)
+        value = self._nested(datum["value"], str(datum["unit"]), self.depth)
+        return np.asarray(value, dtype=float) if self.array else value
 
     def _nested(self, value: Any, unit: str, level: int) -> Any:
         if level == 0:

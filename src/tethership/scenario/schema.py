@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 from tethership.scenario.control_schema import ControlConfig
 from tethership.scenario.quantity import Quantity, Table, Vector
 from tethership.scenario.vehicle_schema import VehicleConfig
+from tethership.scenario.wind_schema import GustConfig, TurbulenceConfig, WindConfig
 
 Angle = Annotated[float, Quantity("rad")]
 Speed = Annotated[float, Quantity("m/s", low=0.0)]
@@ -32,50 +33,6 @@ class ConstantAir(Table):
 
 
 AirConfig = Annotated[StandardAir | ConstantAir, Field(discriminator="model")]
-
-
-class UniformWindConfig(Table):
-    """The same wind everywhere; `from_direction` is where it comes from, clockwise from north."""
-
-    model: Literal["uniform"] = "uniform"
-    speed: Speed
-    from_direction: Angle = 0.0
-
-
-class PowerLawWindConfig(Table):
-    """Wind growing with height; `speed` is that at `reference_height`."""
-
-    model: Literal["power_law"]
-    speed: Speed
-    from_direction: Angle = 0.0
-    reference_height: Metres
-    exponent: Annotated[float, Quantity("1", low=0.0, high=1.0)]
-    lowest_height: Metres = 0.5
-
-
-WindConfig = Annotated[UniformWindConfig | PowerLawWindConfig, Field(discriminator="model")]
-
-
-class GustConfig(Table):
-    """A gust whose peak is a `fraction` of the wind, or a `speed`.
-
-    `shape` is one pulse ½A(1 − cos), those pulses `repeated` to the end, or one period of a bare `cosine`, which
-    begins and ends with a jump.
-    """
-
-    fraction: Annotated[float, Quantity("1", low=0.0)] | None = None
-    speed: Speed | None = None
-    from_direction: Angle
-    upward_angle: Angle = 0.0
-    start: Annotated[float, Quantity("s", low=0.0)]
-    period: Seconds
-    shape: Literal["one_minus_cosine", "repeated", "cosine"] = "one_minus_cosine"
-
-    @model_validator(mode="after")
-    def _one_amplitude(self) -> "GustConfig":
-        if (self.fraction is None) == (self.speed is None):
-            raise ValueError("give either fraction (of the wind) or speed, not both and not neither")
-        return self
 
 
 class GroundConfig(Table):
@@ -186,6 +143,7 @@ class ScenarioConfig(Table):
     atmosphere: AirConfig = StandardAir()
     wind: WindConfig
     gusts: tuple[GustConfig, ...] = ()
+    turbulence: TurbulenceConfig | None = None
     ground: GroundConfig = GroundConfig()
     cables: tuple[CableConfig, ...] = ()
     trim: TrimConfig = TrimConfig()

@@ -193,7 +193,7 @@ def metrics_of(result: BatchResult) -> dict[str, np.ndarray]:
 
     Notes
     -----
-    `docking_time` is NaN for a flight that did not dock; `flight_time` is that of every one. θ_rms in degrees.
+    `docking_time` is NaN for a flight that did not dock; `flight_time` is that of every one. Angles in degrees.
     """
     tally = jax.device_get(result.tally)
     outcome = np.asarray(result.outcome)
@@ -205,6 +205,9 @@ def metrics_of(result: BatchResult) -> dict[str, np.ndarray]:
         "tension_max": tally.tension_max,
         "tension_mean": tally.tension_sum / span,
         "tension_largest": tally.largest_max,
+        "tension_anchor": tally.anchor_max,
+        "roll_max": np.degrees(tally.roll_max),
+        "pitch_max": np.degrees(tally.pitch_max),
         "rewind_rate_min": tally.slowest,
         "seconds_above": np.moveaxis(tally.above, -1, 0),
         "ADC": tally.travel / span,

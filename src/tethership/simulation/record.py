@@ -26,7 +26,7 @@ def _ship(loop: ClosedLoop, time: Float[Array, ""], now: Instant) -> dict[str, A
     rotation = rotation_matrix(state.attitude)
     centre = plant.ship.buoyancy.centre
     velocity_b = state.velocity + jnp.cross(state.rates, centre)
-    air = plant.environment.air(state.position + rotation @ centre, rotation @ velocity_b, time)
+    air = plant.environment.air(state.position + rotation @ centre, rotation @ velocity_b, rotation[:, 0], time)
     return {
         "velocity": state.velocity,
         "rates": state.rates,

@@ -24,10 +24,12 @@ class Signals(NamedTuple):
         At the tether point of the cable that pulls hardest [N].
     largest : Float[Array, ""]
         Largest tension anywhere along any cable [N].
+    anchor : Float[Array, ""]
+        At the anchor of the cable that pulls hardest there, what its winch feels [N].
     throttle : Float[Array, "thrusters"]
         δ [-].
-    pitch : Float[Array, ""]
-        θ [rad].
+    roll, pitch : Float[Array, ""]
+        φ, θ [rad].
     saturated : Float[Array, ""]
         1 where any thruster is asked for more than it has.
     rewind_rate : Float[Array, ""]
@@ -40,7 +42,9 @@ class Signals(NamedTuple):
 
     tension: Float[Array, ""]
     largest: Float[Array, ""]
+    anchor: Float[Array, ""]
     throttle: Float[Array, "thrusters"]
+    roll: Float[Array, ""]
     pitch: Float[Array, ""]
     saturated: Float[Array, ""]
     rewind_rate: Float[Array, ""]
@@ -55,7 +59,9 @@ def signals(loop: ClosedLoop, now: Instant) -> Signals:
     return Signals(
         tension=tension,
         largest=jnp.max(jnp.stack([end_tension(c) for c in cables])) if cables else zero,
+        anchor=jnp.max(jnp.stack([safe_norm(c.anchor) for c in cables])) if cables else zero,
         throttle=now.command.throttle,
+        roll=now.state.attitude[0],
         pitch=now.state.attitude[1],
         saturated=jnp.any(now.saturated).astype(float),
         rewind_rate=jnp.min(now.rewind_rate) if cables else zero,
@@ -73,8 +79,10 @@ class Tally(NamedTuple):
         t [s].
     last, before : Signals
         Signals of the last step and of the one before.
-    tension_max, largest_max : Float[Array, ""]
+    tension_max, largest_max, anchor_max : Float[Array, ""]
         Peaks [N].
+    roll_max, pitch_max : Float[Array, ""]
+        Largest |φ| and |θ| [rad].
     tension_sum, effort_sum, pitch_sum, saturated_sum : Float[Array, ""]
         ∫|F| dt [N s], Σ∫|δ| dt [s], ∫θ² dt [rad² s], time with a thruster saturated [s].
     travel : Float[Array, ""]
@@ -92,6 +100,9 @@ class Tally(NamedTuple):
     before: Signals
     tension_max: Float[Array, ""]
     largest_max: Float[Array, ""]
+    anchor_max: Float[Array, ""]
+    roll_max: Float[Array, ""]
+    pitch_max: Float[Array, ""]
     tension_sum: Float[Array, ""]
     effort_sum: Float[Array, ""]
     pitch_sum: Float[Array, ""]
@@ -112,6 +123,9 @@ def begin(first: Signals, limits: Float[Array, "limits"]) -> Tally:
         first,
         first.tension,
         first.largest,
+        first.anchor,
+        jnp.abs(first.roll),
+        jnp.abs(first.pitch),
         zero,
         zero,
         zero,
@@ -174,6 +188,9 @@ def add(
         before=last,
         tension_max=jnp.maximum(tally.tension_max, peak),
         largest_max=jnp.maximum(tally.largest_max, reached(last.largest, now.largest)),
+        anchor_max=jnp.maximum(tally.anchor_max, reached(last.anchor, now.anchor)),
+        roll_max=jnp.maximum(tally.roll_max, jnp.abs(reached(last.roll, now.roll))),
+        pitch_max=jnp.maximum(tally.pitch_max, jnp.abs(reached(last.pitch, now.pitch))),
         tension_sum=tally.tension_sum + partly(last.tension, now.tension),
         effort_sum=tally.effort_sum + jnp.sum(partly(jnp.abs(last.throttle), jnp.abs(now.throttle))),
         pitch_sum=tally.pitch_sum + partly(last.pitch**2, now.pitch**2),

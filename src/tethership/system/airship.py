@@ -77,28 +77,33 @@ def wrenches(
     Notes
     -----
     Together with the gyroscopic term they are (Mⁱ + Mᵃ) ẇ: `apparent_mass` is what the air's inertia adds
-    besides −Mᵃ ẇ.
+    besides −Mᵃ ẇ. Where the air differs along the hull, envelope, fins and thrust meet ω − ω_air; the inertia of the
+    air does not feel the difference.
     """
     rotation = rotation_matrix(state.attitude)
     to_body = rotation.T
     centre = ship.buoyancy.centre
     velocity_b = state.velocity + jnp.cross(state.rates, centre)
-    air = environment.air(state.position + rotation @ centre, rotation @ velocity_b, time)
+    air = environment.air(state.position + rotation @ centre, rotation @ velocity_b, rotation[:, 0], time)
     density = air.density
     wind = to_body @ air.wind
     gravity = to_body @ environment.gravity
     at_p = state.velocity - wind
     at_b = velocity_b - wind
     rates = state.rates
+    through_air = rates
+    if air.rotation is not None:
+        turning = to_body @ air.rotation
+        through_air, at_p = rates - turning, at_p + jnp.cross(turning, centre)
     return {
         "gravity": ship.gravity.wrench(gravity),
         "buoyancy": ship.buoyancy.wrench(density, gravity),
         "apparent_mass": ship.apparent_mass.wrench(
             density, at_b, rates, wind, to_body @ air.wind_rate_ship, to_body @ air.wind_rate_fluid
         ),
-        "envelope": ship.envelope.wrench(density, at_b, rates),
-        "fins": ship.fins.wrench(density, at_p, rates, command.deflection),
-        "thrust": ship.thrusters.wrench(density, at_p, rates, command.throttle),
+        "envelope": ship.envelope.wrench(density, at_b, through_air),
+        "fins": ship.fins.wrench(density, at_p, through_air, command.deflection),
+        "thrust": ship.thrusters.wrench(density, at_p, through_air, command.throttle),
     }
 
 

@@ -1,5 +1,6 @@
 """Ship and cables together: one more named load per cable. Depends on: physics, system."""
 
+import dataclasses
 from typing import NamedTuple
 
 import equinox as eqx
@@ -178,6 +179,10 @@ class TetheredAirship(eqx.Module):
         """Return the time derivative of the state; arguments as in `wrenches` and `cable_states`."""
         loads = self.wrenches(time, state, command, self.cable_states(time, state, lengths))
         return derivative(state, loads, self.ship, self.environment)
+
+    def in_mean_air(self) -> "TetheredAirship":
+        """Return the plant without turbulence and the like: the one that has an equilibrium."""
+        return dataclasses.replace(self, environment=self.environment.without_fluctuations())
 
     def initial_lengths(self) -> Float[Array, "cables"]:
         """Return the unstretched lengths at the start [m]."""

@@ -14,10 +14,13 @@ Cell = str | float | int | bool | None
 VERDICTS: Mapping[str, str] = {
     "agrees": "good",
     "holds": "good",
+    "met": "good",
     "inside": "good",
     "near": "fair",
+    "open": "fair",
     "differs": "bad",
     "does not hold": "bad",
+    "not met": "bad",
     "broken": "bad",
     "outside": "bad",
 }

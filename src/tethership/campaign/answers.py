@@ -1,0 +1,211 @@
+"""What a campaign's flights say: exceedance, times, tails, importance, pairs, compliance. Returns plain data.
+
+Depends on: campaign. A flight that failed (diverged, or without an equilibrium) counts as exceeding every limit: to
+leave it out would call the worst cases safe.
+"""
+
+import itertools
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from tethership.campaign.extremes import Tail, fit_tail
+from tethership.campaign.importance import rank_importance, sobol_importance
+from tethership.campaign.paired import paired_limit, paired_metric
+from tethership.campaign.plan import Plan
+from tethership.campaign.probability import estimate
+from tethership.campaign.schema import Requirement
+from tethership.campaign.work import VERIFIED
+from tethership.simulation import Outcome
+from tethership.simulation.batch import CODES
+
+UNBALANCED = 1e-3
+"""What a trim may leave [1e-3 of the weight]: beyond it the case has no equilibrium."""
+
+COMPARED = ("docking_time", "tension_max", "tension_mean", "ADC", "E", "theta_rms")
+"""Metrics of a pair of laws."""
+
+LEVELS = (1e-2, 1e-3, 1e-4)
+"""Probabilities per flight whose peak tension is extrapolated."""
+
+PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
+"""Of the time to dock."""
+
+
+def failed(data: xr.Dataset) -> np.ndarray:
+    """Return which flights have no result, shape (laws, cases)."""
+    diverged = data["outcome"].values == CODES.index(Outcome.diverged)
+    return diverged | ~(data["unbalanced"].values < UNBALANCED)
+
+
+def exceeded(plan: Plan, data: xr.Dataset) -> dict[str, np.ndarray]:
+    """Return for each limit that has a number which flights exceed it, shape (laws, cases)."""
+    peak, outcome, broken = data["tension_max"].values, data["outcome"].values, failed(data)
+    control, tear, tensile, weakest = plan.scenario.config.watched_tensions()
+    limits = plan.config.limits
+    found = {
+        "control_threshold": peak > control,
+        "envelope_tear": peak > tear,
+        "envelope_tensile": peak > tensile,
+        "cable_break": (data["tension_largest"].values > weakest) | (outcome == CODES.index(Outcome.cable_broken)),
+    }
+    if limits.winch_pull is not None:
+        found["winch_pull"] = data["tension_anchor"].values > limits.winch_pull
+    if limits.attitude is not None:
+        largest = np.maximum(data["roll_max"].values, data["pitch_max"].values)
+        found["attitude"] = largest > np.degrees(limits.attitude)
+    found["ground_contact"] = data["clearance_min"].values < 0.0
+    if limits.time is not None:
+        found["time"] = ~(data["docking_time"].values <= limits.time)
+    return {name: flags | broken for name, flags in found.items()}
+
+
+def answer(plan: Plan, data: xr.Dataset, confidence: float = 0.95) -> dict[str, Any]:
+    """Return everything that a campaign says, law by law.
+
+    Parameters
+    ----------
+    plan : Plan
+        The campaign.
+    data : xr.Dataset
+        From `open_results`, complete.
+    confidence : float
+        Of all intervals.
+    """
+    flags = exceeded(plan, data)
+    names = [law.name for law in plan.laws]
+    return {
+        "runs": int(data["outcome"].size),
+        "cases": plan.cases,
+        "failed": int(failed(data).sum()),
+        "confidence": confidence,
+        "sampling": plan.config.sampling,
+        "laws": {name: _of_law(plan, data, flags, i, confidence) for i, name in enumerate(names)},
+        "pairs": [_pair(plan, data, flags, a, b) for a, b in itertools.combinations(range(len(names)), 2)],
+        "compliance": [_complied(plan, flags, r, i) for r in plan.config.requirements for i in _laws_of(plan, r)],
+        "step_error": step_error(data),
+    }
+
+
+def _of_law(plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray], law: int, confidence: float) -> dict[str, Any]:
+    """Return the answers of one law."""
+    sampling, replicate = plan.config.sampling, plan.sample.replicate
+    rows = _estimated_rows(plan)
+    probabilities = {
+        name: estimate(of[law][rows], sampling, replicate[rows], confidence)._asdict() for name, of in flags.items()
+    }
+    outcomes = data["outcome"].values[law]
+    return {
+        "exceedance": probabilities,
+        "outcomes": {code.name: int(np.sum(outcomes == i)) for i, code in enumerate(CODES) if np.any(outcomes == i)},
+        "docking_time": _percentiles(data["docking_time"].values[law][rows]),
+        "tension_max": _percentiles(data["tension_max"].values[law][rows]),
+        "tail": _tail(plan, data["tension_max"].values[law], confidence),
+        "importance": [entry._asdict() for entry in _importance(plan, data["tension_max"].values[law])],
+    }
+
+
+def _estimated_rows(plan: Plan) -> slice:
+    """Return the cases of which shares are taken: of a Saltelli design its first two blocks, which fill the box."""
+    if plan.config.sampling != "saltelli":
+        return slice(None)
+    return slice(2 * plan.cases // (len(plan.config.vary) + 2))
+
+
+def _percentiles(values: np.ndarray) -> dict[str, Any]:
+    """Return percentiles of what is finite, and how many there are."""
+    finite = values[np.isfinite(values)]
+    if not len(finite):
+        return {"count": 0}
+    found = np.percentile(finite, PERCENTILES)
+    named = {f"p{place:g}": float(value) for place, value in zip(PERCENTILES, found, strict=True)}
+    return {"count": len(finite), **named}
+
+
+def _tail(plan: Plan, peaks: np.ndarray, confidence: float) -> dict[str, Any] | None:
+    """Return the fitted tail of the peak tension, None where there are too few flights or they are not independent."""
+    fitted = fit_tail(peaks, plan.config.seed) if plan.config.sampling == "random" else None
+    return None if fitted is None else tail_data(fitted, confidence)
+
+
+def tail_data(tail: Tail, confidence: float) -> dict[str, Any]:
+    """Return a tail as plain data, with its return levels."""
+    levels = [
+        dict(zip(("level", "low", "high"), tail.level(p, confidence), strict=True)) | {"probability": p} for p in LEVELS
+    ]
+    return {
+        "threshold": tail.threshold,
+        "share": tail.share,
+        "shape": tail.shape,
+        "scale": tail.scale,
+        "end": tail.end,
+        "excesses": tail.excesses,
+        "distance": tail.distance,
+        "levels": levels,
+    }
+
+
+def _importance(plan: Plan, peaks: np.ndarray) -> list[Any]:
+    """Return what the peak tension hangs on."""
+    names, values = plan.sample.names, plan.sample.values
+    if plan.config.sampling == "saltelli":
+        return sobol_importance(names, values, peaks, plan.config.seed)
+    return list(rank_importance(names, values, peaks))
+
+
+def _pair(plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray], first: int, second: int) -> dict[str, Any]:
+    """Return two laws on the same cases."""
+    metrics = [paired_metric(name, data[name].values[first], data[name].values[second]) for name in COMPARED]
+    return {
+        "first": plan.laws[first].name,
+        "second": plan.laws[second].name,
+        "metrics": [metric._asdict() for metric in metrics if metric is not None],
+        "limits": [paired_limit(name, of[first], of[second])._asdict() for name, of in flags.items()],
+    }
+
+
+def _laws_of(plan: Plan, requirement: Requirement) -> list[int]:
+    """Return the places of the laws a requirement is of."""
+    return [i for i, law in enumerate(plan.laws) if requirement.law in (None, law.name)]
+
+
+def _complied(plan: Plan, flags: dict[str, np.ndarray], requirement: Requirement, law: int) -> dict[str, Any]:
+    """Return a requirement with its verdict: met, not met, or open where the interval holds both."""
+    rows = _estimated_rows(plan)
+    found = estimate(
+        flags[requirement.limit][law][rows], plan.config.sampling, plan.sample.replicate[rows], requirement.confidence
+    )
+    if found.low is None or found.high is None:
+        verdict = "open"
+    else:
+        verdict = (
+            "met"
+            if found.high <= requirement.probability
+            else "not met"
+            if found.low > requirement.probability
+            else "open"
+        )
+    return {
+        "requirement": requirement.text or f"{requirement.limit} in at most {requirement.probability:g} of flights",
+        "limit": requirement.limit,
+        "law": plan.laws[law].name,
+        "allowed": requirement.probability,
+        "probability": found.probability,
+        "low": found.low,
+        "high": found.high,
+        "confidence": requirement.confidence,
+        "verdict": verdict,
+    }
+
+
+def step_error(data: xr.Dataset) -> dict[str, Any]:
+    """Return what the fixed steps cost: |fixed/tight − 1| of the flights flown again, median and largest by metric."""
+    found: dict[str, Any] = {"flights": 0}
+    for name in VERIFIED:
+        errors = data[f"error_{name}"].values if f"error_{name}" in data else np.array([])
+        finite = errors[np.isfinite(errors)]
+        found["flights"] = max(found["flights"], len(finite))
+        if len(finite):
+            found[name] = {"median": float(np.median(finite)), "largest": float(np.max(finite))}
+    return found

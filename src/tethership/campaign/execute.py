@@ -1,0 +1,173 @@
+"""Flying a campaign's batches: in this process, in others, or on a Dask cluster. Depends on: campaign.
+
+One loop for all three: what can `submit` is given batches, a few more than it has hands, and what it returns is
+written as it comes. Memory does not grow with the number of cases.
+"""
+
+import multiprocessing
+import os
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from typing import Any, NamedTuple, cast
+
+from tethership.campaign.plan import Batch, Plan
+from tethership.campaign.store import CampaignStore
+from tethership.campaign.work import fly_batch
+from tethership.errors import ConfigError, SolveError
+
+CONNECT = 10.0
+"""How long a scheduler is waited for [s]."""
+
+RETRIES = 3
+"""How often a batch is given to another worker of a cluster when one died over it."""
+
+Progress = Callable[[int, int], None]
+"""Called with the flights that are done and their total."""
+
+
+class Hands(NamedTuple):
+    """Whatever flies batches.
+
+    Attributes
+    ----------
+    executor : Executor
+    at_once : int
+        Batches that it flies at once.
+    """
+
+    executor: Executor
+    at_once: int
+
+
+def fly_campaign(plan: Plan, store: CampaignStore, hands: Hands, progress: Progress | None = None) -> int:
+    """Fly all batches that have not ended, and return how many flights were flown.
+
+    Raises
+    ------
+    SolveError
+        A worker died.
+    ConfigError
+        Results cannot be written.
+    """
+    work = plan.work()
+    waiting = iter(store.unfinished())
+    total = len(plan.laws) * plan.cases
+    left = sum(len(plan.batch(number).values) for number in store.unfinished())
+    done, flown = total - left, 0
+    running: dict[Future, Batch] = {}
+
+    def start() -> None:
+        while len(running) < hands.at_once + 2 and (number := next(waiting, None)) is not None:
+            batch = plan.batch(number)
+            running[hands.executor.submit(fly_batch, work, batch)] = batch
+
+    if progress is not None:
+        progress(done, total)
+    start()
+    while running:
+        ready, _ = wait(running, return_when=FIRST_COMPLETED)
+        for future in ready:
+            batch = running.pop(future)
+            store.keep(batch, _result(future))
+            flown += len(batch.values)
+            if progress is not None:
+                progress(done + flown, total)
+        start()
+    return flown
+
+
+def _result(future: Future) -> Any:
+    """Return what a batch gave, or raise SolveError that says what to do where its worker died."""
+    try:
+        return future.result()
+    except BrokenProcessPool as error:
+        raise SolveError("a worker process died; run the same command again to go on from the last batch") from error
+    except ModuleNotFoundError as error:
+        raise ConfigError(f"a worker lacks {error.name}; install tethership {_version()} where it runs") from error
+
+
+def _version() -> str:
+    from tethership._version import __version__
+
+    return __version__
+
+
+@contextmanager
+def in_this_process() -> Iterator[Hands]:
+    """Fly two batches at once on two threads: JAX lets go of Python's lock."""
+    count = min(2, os.cpu_count() or 1)
+    with _ended(ThreadPoolExecutor(count)) as pool:
+        yield Hands(pool, count)
+
+
+@contextmanager
+def in_processes(workers: int) -> Iterator[Hands]:
+    """Fly on so many fresh processes of this machine."""
+    with _ended(ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"))) as pool:
+        yield Hands(pool, workers)
+
+
+@contextmanager
+def _ended(pool: Executor) -> Iterator[Executor]:
+    """Give a pool and end it at once where the caller fails."""
+    try:
+        yield pool
+    except BaseException:
+        for process in list((getattr(pool, "_processes", None) or {}).values()):
+            process.terminate()
+        pool.shutdown(wait=False, cancel_futures=True)
+        raise
+    else:
+        pool.shutdown()
+
+
+@contextmanager
+def on_cluster(address: str) -> Iterator[Hands]:
+    """Fly on the workers of a Dask cluster.
+
+    Parameters
+    ----------
+    address : str
+        Of its scheduler, e.g. tcp://127.0.0.1:8786.
+
+    Raises
+    ------
+    ConfigError
+        dask.distributed is not installed, the scheduler does not answer, it has no workers, or a worker lacks this
+        version of the package.
+    """
+    try:
+        from distributed import Client
+    except ImportError as error:
+        raise ConfigError("--scheduler needs dask.distributed: pip install 'tethership[cluster]'") from error
+    try:
+        client = Client(address, timeout=CONNECT)
+    except (OSError, TimeoutError, ValueError) as error:
+        raise ConfigError(f"no scheduler answers at {address}: start one with `dask scheduler`, or check it") from error
+    with client:
+        _check_workers(client, address)
+        threads = sum(cast(dict[str, int], client.nthreads()).values())
+        yield Hands(client.get_executor(retries=RETRIES), threads)
+
+
+def _worker_version() -> str:
+    """Return the version of the package where this runs, `none` if there is none."""
+    try:
+        from tethership._version import __version__
+    except ImportError:
+        return "none"
+    return __version__
+
+
+def _check_workers(client: Any, address: str) -> None:
+    """Raise ConfigError where a cluster cannot fly."""
+    client.wait_for_workers(1, timeout=CONNECT)
+    found = client.run(_worker_version)
+    other = {worker: version for worker, version in found.items() if version != _version()}
+    if other:
+        worker, version = next(iter(other.items()))
+        raise ConfigError(
+            f"worker {worker} of {address} has tethership {version}, here it is {_version()}; install the same on all"
+        )

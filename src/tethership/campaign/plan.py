@@ -1,0 +1,214 @@
+"""A campaign made ready: its scenario, its cases, its laws, cut into batches. Depends on: campaign, scenario, analysis.
+
+Whatever flies a batch needs nothing but a `Batch` (plain data), so that it may be another process or another machine.
+"""
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tethership._version import __version__
+from tethership.campaign.flights import BATCH, FEW, SWITCHES
+from tethership.campaign.sampling import Sample, draw
+from tethership.campaign.schema import CampaignConfig, LawConfig
+from tethership.errors import ConfigError
+from tethership.scenario import Scenario, find_parameter, list_parameters, load_scenario
+from tethership.scenario.changes import Document
+from tethership.scenario.load import read_document, validated
+
+
+class Batch(NamedTuple):
+    """What one call flies.
+
+    Attributes
+    ----------
+    number : int
+        Its place among the batches.
+    law : int
+        Which law.
+    first : int
+        Its first case.
+    values : ndarray
+        [SI], shape (cases, names).
+    verified : tuple of int
+        Places in the batch of cases that are flown again adaptively.
+    """
+
+    number: int
+    law: int
+    first: int
+    values: np.ndarray
+    verified: tuple[int, ...]
+
+
+class Work(NamedTuple):
+    """What all batches have in common, as plain data.
+
+    Attributes
+    ----------
+    scenario : str
+        The scenario's document as JSON.
+    scenario_name : str
+        For messages.
+    names : tuple of str
+        Dotted names of the columns of `Batch.values`.
+    example : tuple of float
+        Values of one case.
+    lanes : int
+        Flights of one call.
+    step : float
+        h [s].
+    """
+
+    scenario: str
+    scenario_name: str
+    names: tuple[str, ...]
+    example: tuple[float, ...]
+    lanes: int
+    step: float
+
+
+class Plan(NamedTuple):
+    """A campaign, ready.
+
+    Attributes
+    ----------
+    name : str
+        Packaged name or file.
+    document : dict
+        As read, with what the command changed.
+    config : CampaignConfig
+    scenario : Scenario
+    sample : Sample
+        The cases.
+    laws : tuple of LawConfig
+        All laws fly all cases.
+    names : tuple of str
+        Columns of a batch: what varies, then gains that differ between laws.
+    values : ndarray
+        [SI], shape (laws, cases, names).
+    """
+
+    name: str
+    document: Document
+    config: CampaignConfig
+    scenario: Scenario
+    sample: Sample
+    laws: tuple[LawConfig, ...]
+    names: tuple[str, ...]
+    values: np.ndarray
+
+    @property
+    def cases(self) -> int:
+        """Cases; every law flies each."""
+        return self.values.shape[1]
+
+    @property
+    def lanes(self) -> int:
+        """Flights of one call."""
+        return FEW if self.cases <= 2 * FEW else BATCH
+
+    @property
+    def batches(self) -> int:
+        """Batches."""
+        return len(self.laws) * -(-self.cases // self.lanes)
+
+    def work(self) -> Work:
+        """Return what all batches have in common."""
+        document, example = json.dumps(self.scenario.document), tuple(map(float, self.values[0, 0]))
+        return Work(document, self.scenario.name, self.names, example, self.lanes, self.config.step)
+
+    def batch(self, number: int) -> Batch:
+        """Return one batch by its number."""
+        law, place = divmod(number, self.batches // len(self.laws))
+        first = place * self.lanes
+        values = self.values[law, first : first + self.lanes]
+        chosen = np.random.default_rng([self.config.seed, number]).random(len(values)) < self.config.verified
+        return Batch(number, law, first, values, tuple(map(int, np.flatnonzero(chosen))))
+
+    def digest(self) -> str:
+        """Return what tells this campaign from another: everything that goes into its numbers."""
+        whole = [__version__, self.document, self.scenario.document, self.names, [law.name for law in self.laws]]
+        text = json.dumps(whole, sort_keys=True, default=str)
+        return hashlib.sha256(text.encode() + self.values.tobytes()).hexdigest()
+
+
+def make_plan(name: str, changes: dict[str, Any] | None = None, scenario_changes: dict[str, Any] | None = None) -> Plan:
+    """Return a campaign made ready.
+
+    Parameters
+    ----------
+    name : str
+        Packaged name, or a path that ends in `.toml`.
+    changes : mapping, optional
+        Of the campaign's own keys: samples, seed, sampling, …
+    scenario_changes : mapping, optional
+        Of the scenario, by dotted name, as in `load_scenario`.
+
+    Raises
+    ------
+    ConfigError
+        Anything in the file that cannot be.
+    """
+    document = {**read_document("campaigns", name), **(changes or {})}
+    if scenario_changes:
+        document["changes"] = {**document.get("changes", {}), **scenario_changes}
+    config = validated(CampaignConfig, document, name)
+    scenario = load_scenario(_beside(name, config.scenario), config.changes)
+    _check_limits(config, name)
+    sample = draw(config, scenario, name)
+    laws = config.laws or (LawConfig(name="own", layers=scenario.layers),)
+    names, values = _columns(scenario, sample, laws)
+    return Plan(name, document, config, scenario, sample, laws, names, values)
+
+
+def _beside(campaign: str, scenario: str) -> str:
+    """Return a scenario's name, its path counted from the campaign's file."""
+    if scenario.endswith(".toml") and campaign.endswith(".toml") and not Path(scenario).is_absolute():
+        return str(Path(campaign).parent / scenario)
+    return scenario
+
+
+def _check_limits(config: CampaignConfig, origin: str) -> None:
+    """Raise ConfigError where a requirement asks for a limit that has no number."""
+    for requirement in config.requirements:
+        if (
+            requirement.limit in ("winch_pull", "attitude", "time")
+            and getattr(config.limits, requirement.limit) is None
+        ):
+            raise ConfigError(f"{origin}: a requirement on {requirement.limit} needs limits.{requirement.limit}")
+
+
+def _columns(scenario: Scenario, sample: Sample, laws: tuple[LawConfig, ...]) -> tuple[tuple[str, ...], np.ndarray]:
+    """Return names and values (laws, cases, names) of all that differs from flight to flight."""
+    gains = [_gains(scenario, law) for law in laws]
+    extra = sorted({name for law in gains for name in law} - set(sample.names))
+    known = list_parameters(scenario.config)
+    names = (*sample.names, *extra)
+    values = np.empty((len(laws), len(sample.values), len(names)))
+    values[:, :, : len(sample.names)] = sample.values
+    for i, law in enumerate(gains):
+        for j, name in enumerate(extra):
+            values[i, :, len(sample.names) + j] = law.get(name, known[name].value)
+        for j, name in enumerate(sample.names):
+            if law.get(name) == 0.0 and any(name in switch for switch in SWITCHES.values()):
+                values[i, :, j] = 0.0  # the layer whose gain varies is off
+    return names, values
+
+
+def _gains(scenario: Scenario, law: LawConfig) -> dict[str, float]:
+    """Return what a law sets, dotted name → value [SI]."""
+    known = list_parameters(scenario.config)
+    found: dict[str, float] = {}
+    if law.gains_of is not None:
+        other = list_parameters(load_scenario(law.gains_of).config)
+        found |= {n: p.value for n, p in other.items() if n.startswith("control.") and "*" not in n and n in known}
+    for name, value in law.changes.items():
+        found[find_parameter(known, name, scenario.name).name] = value
+    for layer, names in SWITCHES.items():
+        for name in names:
+            found[name] = found.get(name, known[name].value) if layer in law.layers else 0.0
+    return found

@@ -1,0 +1,149 @@
+"""A campaign's results on disk, as batches end: a Zarr group and a mark for each finished batch.
+
+Depends on: zarr, campaign.plan. A mark is made after a batch's numbers are written, so that whatever is marked is
+whole: killed at any moment, a campaign goes on with the batches that have none.
+"""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+import zarr
+
+from tethership._version import __version__
+from tethership.campaign.plan import Batch, Plan
+from tethership.errors import ConfigError
+
+RESULTS, MARKS, MANIFEST = "results.zarr", "finished", "campaign.json"
+
+
+class CampaignStore:
+    """The folder of one campaign.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if it is not there; what is in it is gone on with if it is of the same campaign.
+    plan : Plan
+        The campaign.
+
+    Raises
+    ------
+    ConfigError
+        The folder holds another campaign, or one of another version, or something else; nothing is touched.
+    """
+
+    def __init__(self, folder: Path, plan: Plan) -> None:
+        self.folder, self._plan = folder, plan
+        known = read_manifest(folder)
+        if known is None:
+            self._begin()
+        elif known.get("digest") != plan.digest():
+            version = known.get("tethership")
+            what = f"a campaign of tethership {version}" if version != __version__ else "another campaign"
+            raise ConfigError(
+                f"{folder} holds {what} ({known.get('name')}, {known.get('cases')} cases, seed {known.get('seed')}); "
+                "choose another --out, or delete the folder"
+            )
+        self._arrays: dict[str, Any] = {}
+
+    def _begin(self) -> None:
+        """Write what the campaign is; refuse a folder that holds something of another kind."""
+        if (self.folder / RESULTS).exists():
+            raise ConfigError(f"{self.folder / RESULTS} has no {MANIFEST} beside it; choose another --out")
+        (self.folder / MARKS).mkdir(parents=True, exist_ok=True)
+        plan = self._plan
+        group = zarr.create_group(self.folder / RESULTS)
+        group.attrs.update({"laws": [law.name for law in plan.laws], "inputs": list(plan.names)})
+        shape = plan.values.shape
+        chunks = (1, plan.lanes, shape[2])
+        inputs = group.create_array(
+            "input", shape=shape, chunks=chunks, dtype="f8", dimension_names=("law", "case", "quantity")
+        )
+        inputs[...] = plan.values
+        group.create_array("replicate", data=plan.sample.replicate, dimension_names=("case",))
+        manifest = {
+            "digest": plan.digest(),
+            "tethership": __version__,
+            "name": plan.name,
+            "cases": plan.cases,
+            "seed": plan.config.seed,
+            "laws": [law.name for law in plan.laws],
+            "campaign": plan.document,
+            "scenario": plan.scenario.document,
+        }
+        partial = self.folder / f"{MANIFEST}.partial"
+        partial.write_text(json.dumps(manifest, indent=1, default=str), encoding="utf-8")
+        partial.replace(self.folder / MANIFEST)
+
+    def unfinished(self) -> list[int]:
+        """Return the numbers of the batches that have not ended."""
+        done = {int(path.name) for path in (self.folder / MARKS).iterdir()}
+        return [number for number in range(self._plan.batches) if number not in done]
+
+    def keep(self, batch: Batch, found: Mapping[str, np.ndarray]) -> None:
+        """Write a batch's numbers, then its mark.
+
+        Raises
+        ------
+        ConfigError
+            They cannot be written (disk full): what was written before stays readable.
+        """
+        rows = slice(batch.first, batch.first + len(batch.values))
+        try:
+            for name, values in found.items():
+                self._array(name, values)[batch.law, rows] = values
+            (self.folder / MARKS / f"{batch.number:06d}").touch()
+        except OSError as error:
+            raise ConfigError(
+                f"cannot write to {self.folder}: {error.strerror or error}. What is finished is kept: make room and "
+                "run the same command again"
+            ) from error
+
+    def _array(self, name: str, example: np.ndarray) -> Any:
+        """Return the array of an output, made at its first use."""
+        if name not in self._arrays:
+            group = zarr.open_group(self.folder / RESULTS)
+            if name not in group:
+                own = example.shape[1:]
+                fill: Any = np.nan if example.dtype.kind == "f" else -1
+                group.create_array(
+                    name,
+                    shape=(*self._plan.values.shape[:2], *own),
+                    chunks=(1, self._plan.lanes, *own),
+                    dtype=example.dtype,
+                    fill_value=fill,
+                    dimension_names=("law", "case", *(f"{name}_item" for _ in own)),
+                )
+            self._arrays[name] = group[name]
+        return self._arrays[name]
+
+
+def read_manifest(folder: Path) -> dict[str, Any] | None:
+    """Return what a folder's campaign is, None where there is none."""
+    path = folder / MANIFEST
+    if not path.is_file():
+        return None
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise ConfigError(f"cannot read {path}: {error}; choose another --out") from error
+
+
+def open_results(folder: str | Path) -> xr.Dataset:
+    """Return a campaign's results: every metric over law and case, inputs over law, case and quantity.
+
+    Raises
+    ------
+    ConfigError
+        The folder holds no campaign.
+    """
+    manifest = read_manifest(Path(folder))
+    if manifest is None:
+        raise ConfigError(f"{folder} holds no campaign; give the folder that `tethership campaign` wrote")
+    with xr.open_zarr(Path(folder) / RESULTS, consolidated=False) as data:
+        loaded = data.load()
+    return loaded.assign_coords(law=manifest["laws"], quantity=loaded.attrs["inputs"])

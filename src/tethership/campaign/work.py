@@ -1,0 +1,86 @@
+"""Flying one batch of a campaign, in this process or another. Depends on: campaign, simulation, analysis, scenario."""
+
+import functools
+import json
+
+import numpy as np
+
+from tethership.analysis import TrimOutcome, trim
+from tethership.campaign.flights import Flyer
+from tethership.campaign.plan import Batch, Work
+from tethership.errors import ConfigError
+from tethership.scenario import Scenario, scenario_at
+from tethership.scenario.load import from_document
+from tethership.simulation import Flight, dock
+
+VERIFIED = ("docking_time", "tension_max", "tension_mean", "ADC", "E", "theta_rms")
+"""Metrics in which fixed steps are held against a tight adaptive flight."""
+
+
+@functools.lru_cache(maxsize=2)
+def _scenario(work: Work) -> Scenario:
+    return from_document(json.loads(work.scenario), work.scenario_name)
+
+
+@functools.lru_cache(maxsize=2)
+def _flyer(work: Work) -> Flyer:
+    return Flyer(_scenario(work), work.names, np.array(work.example), work.lanes, work.step)
+
+
+def fly_batch(work: Work, batch: Batch) -> dict[str, np.ndarray]:
+    """Return the metrics of a batch's flights, and the error of those flown again.
+
+    Returns
+    -------
+    dict[str, ndarray]
+        As `fly_cases`, and `error_NAME` for each of `VERIFIED`: |fixed/tight − 1|, NaN where it was not flown again.
+    """
+    found = _flyer(work).fly(batch.values)
+    errors = {name: np.full(len(batch.values), np.nan) for name in VERIFIED}
+    for place in batch.verified:
+        exact = _tight(work, batch.values[place])
+        if exact is None:
+            continue
+        for name in VERIFIED:
+            tight = exact.docking_time if name == "docking_time" else exact.metrics[name]
+            errors[name][place] = _apart(found[name][place], tight)
+    return {**found, **{f"error_{name}": error for name, error in errors.items()}}
+
+
+def _apart(fixed: float, tight: float | None) -> float:
+    """Return |fixed/tight − 1|, NaN where either has no such number."""
+    return abs(fixed / tight - 1.0) if tight else np.nan
+
+
+def _tight(work: Work, values: np.ndarray) -> Flight | None:
+    """Return a case flown adaptively to tight tolerance, None where it cannot begin."""
+    try:
+        return fly_one(_scenario(work), work.names, values, "tight")
+    except ConfigError:
+        return None
+
+
+def fly_one(scenario: Scenario, names: tuple[str, ...], values: np.ndarray, solver: str = "adaptive") -> Flight:
+    """Fly one case with histories.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What all cases have in common.
+    names : tuple of str
+        Dotted names.
+    values : ndarray
+        [SI], shape (names,).
+    solver : str
+        As in `dock`.
+
+    Raises
+    ------
+    ConfigError
+        It has no equilibrium, or is over before it begins.
+    """
+    here = scenario_at(scenario, dict(zip(names, map(float, values), strict=True)))
+    point = trim(here)
+    if point.outcome is TrimOutcome.no_equilibrium:
+        raise ConfigError(f"{scenario.name}: no equilibrium for this case")
+    return dock(here, point, ("rewind", "heading", "navigation"), solver=solver)

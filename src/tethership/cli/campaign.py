@@ -1,0 +1,144 @@
+"""`tethership campaign`: many flights, resumable, and what they say."""
+
+import platform
+import time
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from tethership._version import __version__
+from tethership.cli.common import (
+    FormulationOption,
+    JsonOption,
+    SetOption,
+    WindOption,
+    parsed_changes,
+    print_json,
+    table,
+    writable_folder,
+)
+from tethership.cli.progress import progress_bar
+
+EXAMPLE = "Example: tethership campaign gusts --samples 1000 --workers 2"
+
+
+def campaign(
+    name: Annotated[
+        str, typer.Argument(help="Packaged campaign (see `tethership list`) or a path that ends in .toml.")
+    ],
+    samples: Annotated[int | None, typer.Option(min=1, help="Cases, in place of the file's number.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Of the cases, in place of the file's.")] = None,
+    sampling: Annotated[
+        str | None, typer.Option(help="random, sobol, latin_hypercube, grid or saltelli, in place of the file's.")
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, max=1024, help="Processes of this machine; without it this one flies.")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Scheduler of a Dask cluster, e.g. tcp://127.0.0.1:8786.")
+    ] = None,
+    confidence: Annotated[float, typer.Option(min=0.5, max=0.9999, help="Of the intervals.")] = 0.95,
+    wind: WindOption = None,
+    formulation: FormulationOption = None,
+    changes: SetOption = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder of the campaign; the same again goes on with it. Default: campaigns/NAME."),
+    ] = None,
+    json: JsonOption = False,
+) -> None:
+    """Fly a manoeuvre many times over what may vary, and say how often each limit is passed.
+
+    Results are kept batch by batch: interrupted at any moment, the same command goes on. Writes results.zarr,
+    report.html, tables as CSV and the worst flights with their histories into --out.
+    """
+    from tethership.campaign.run import run_campaign
+
+    own = {
+        key: value for key, value in (("samples", samples), ("seed", seed), ("sampling", sampling)) if value is not None
+    }
+    folder = Path("campaigns") / Path(name).stem if out is None else out
+    writable_folder(folder)
+    begun = time.perf_counter()
+    with progress_bar(f"campaign {Path(name).stem}") as report:
+        found = run_campaign(
+            name,
+            folder,
+            own,
+            _scenario_changes(wind, formulation, changes),
+            workers,
+            scheduler,
+            confidence,
+            lambda done, total: report(f"{done} of {total} flights", done / total),
+        )
+    result = _concluded(found, folder)
+    result["seconds"] = round(time.perf_counter() - begun, 1)
+    if json:
+        print_json(result)
+    else:
+        _print(result)
+
+
+def _scenario_changes(wind: float | None, formulation: str | None, changes: list[str] | None) -> dict[str, Any]:
+    """Return the scenario's changes by the flags."""
+    found = parsed_changes(changes)
+    if wind is not None:
+        found["wind.speed"] = wind
+    if formulation is not None:
+        found["formulation"] = formulation
+    return found
+
+
+def _concluded(found: Any, folder: Path) -> dict[str, Any]:
+    """Return what the flights say, with the files it was written to."""
+    from tethership.view.campaign_report import write_campaign
+
+    plan, answers = found.plan, found.answers
+    written = write_campaign(folder, plan, found.data, answers, _footer(plan))
+    first = next(iter(answers["laws"].values()))
+    return {
+        "campaign": plan.name,
+        "formulation": plan.scenario.formulation,
+        "flown": found.flown,
+        **answers,
+        "exceedance": first["exceedance"],
+        "files": [*map(str, written), str(folder / "results.zarr")],
+    }
+
+
+def _footer(plan: Any) -> dict[str, Any]:
+    """Return versions and provenance."""
+    import jax
+
+    return {
+        "tethership": __version__,
+        "campaign": plan.name,
+        "digest": plan.digest()[:16],
+        "jax": jax.__version__,
+        "python": platform.python_version(),
+        "written": time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime()),
+    }
+
+
+def _print(result: dict[str, Any]) -> None:
+    """Print probabilities, times and verdicts."""
+    typer.echo(f"{result['campaign']}: {result['runs']} flights, {result['failed']} failed, {result['seconds']:.0f} s")
+    for name, law in result["laws"].items():
+        rows = [
+            (limit.replace("_", " "), f"{100 * row['probability']:.2f} %", _interval(row))
+            for limit, row in law["exceedance"].items()
+        ]
+        table(rows, f"{name}: probability of passing each limit, {100 * result['confidence']:g} % interval")
+    rows = [(row["requirement"], row["verdict"], f"{row['law']}: {_interval(row)}") for row in result["compliance"]]
+    if rows:
+        table(rows, "requirements")
+    for path in result["files"]:
+        typer.echo(f"wrote {path}")
+
+
+def _interval(row: dict[str, Any]) -> str:
+    """Return an interval in percent."""
+    if row["low"] is None:
+        return "no interval"
+    return f"{100 * row['low']:.2f} … {100 * row['high']:.2f} %"

@@ -1,0 +1,114 @@
+"""From a validated scenario to the air around the ship. Depends on: system, physics, scenario's tables.
+
+Written with jax.numpy, as `scenario.build` is.
+"""
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from tethership.physics.atmosphere import AbstractAtmosphere, ConstantAtmosphere, StandardAtmosphere
+from tethership.physics.ground_effect import GroundEffect
+from tethership.physics.gust import AbstractGust, BareCosine, CosineGust, RepeatedCosine
+from tethership.physics.turbulence import (
+    REFERENCE_HEIGHT,
+    SPECTRA,
+    AbstractFluctuation,
+    MeasuredHistory,
+    Scales,
+    low_altitude_scales,
+    make_turbulence,
+)
+from tethership.physics.wind import AbstractWind, LogarithmicWind, PowerLawWind, UniformWind
+from tethership.scenario.schema import ConstantAir, ScenarioConfig
+from tethership.scenario.wind_schema import (
+    AnyWindConfig,
+    GustConfig,
+    LogarithmicWindConfig,
+    MeasuredWindConfig,
+    PowerLawWindConfig,
+    TurbulenceConfig,
+)
+from tethership.spatial import STANDARD_GRAVITY, safe_norm
+from tethership.system import Environment
+
+
+def direction_from(azimuth: Float[Array, ""], upward: Float[Array, ""] | float = 0.0) -> Float[Array, "3"]:
+    """Return the unit vector, ground axes, of air that comes *from* an azimuth [rad] and rises at an angle [rad]."""
+    level = jnp.cos(upward)
+    return jnp.stack([-level * jnp.cos(azimuth), -level * jnp.sin(azimuth), -jnp.sin(jnp.asarray(upward))])
+
+
+def _wind(config: AnyWindConfig, ground: Float[Array, ""]) -> AbstractWind:
+    """Return the mean wind; that of a measured history is the same everywhere."""
+    velocity = config.speed * direction_from(jnp.asarray(config.from_direction))
+    if isinstance(config, PowerLawWindConfig):
+        reference, exponent, lowest = map(jnp.asarray, (config.reference_height, config.exponent, config.lowest_height))
+        return PowerLawWind(velocity, reference, exponent, lowest, ground)
+    if isinstance(config, LogarithmicWindConfig):
+        return LogarithmicWind(velocity, jnp.asarray(config.reference_height), jnp.asarray(config.roughness), ground)
+    return UniformWind(velocity)
+
+
+def _gust(config: GustConfig, wind_speed: float) -> AbstractGust:
+    peak = config.speed if config.fraction is None else config.fraction * wind_speed
+    direction = direction_from(jnp.asarray(config.from_direction), jnp.asarray(config.upward_angle))
+    vector, start, period = jnp.asarray(peak) * direction, jnp.asarray(config.start), jnp.asarray(config.period)
+    if config.shape == "repeated":
+        return RepeatedCosine(vector, start, period)
+    if config.shape == "cosine":
+        return BareCosine(vector, start, period)
+    return CosineGust(vector, start, period, jnp.asarray(config.turn))
+
+
+def _turbulence(
+    config: TurbulenceConfig, wind: AbstractWind, ground: Float[Array, ""], hull_length: Float[Array, ""]
+) -> AbstractFluctuation:
+    """Return a record for the mean wind at 20 ft and at the height whose scales are used."""
+    here, at_20_ft = (
+        wind.velocity(jnp.stack([jnp.zeros(()), jnp.zeros(()), ground - height]))
+        for height in (jnp.asarray(config.height), REFERENCE_HEIGHT)
+    )
+    scales = low_altitude_scales(jnp.asarray(config.height), safe_norm(at_20_ft))
+    if config.lengths is not None and config.deviations is not None:
+        scales = Scales(jnp.asarray(config.lengths), jnp.asarray(config.deviations))
+    scales = scales._replace(deviation=jnp.asarray(config.intensity) * scales.deviation)
+    averaged = hull_length if config.averaged else jnp.zeros(())
+    return make_turbulence(SPECTRA[config.spectrum], scales, here, jnp.asarray(config.seed), averaged, config.gradients)
+
+
+def _fluctuations(
+    config: ScenarioConfig, wind: AbstractWind, ground: Float[Array, ""]
+) -> tuple[AbstractFluctuation, ...]:
+    """Return what the wind does about its mean."""
+    found: list[AbstractFluctuation] = []
+    if isinstance(config.wind, MeasuredWindConfig):
+        velocities = jnp.asarray(config.wind.velocities) - wind.velocity(jnp.zeros(3))
+        found.append(MeasuredHistory.through(jnp.asarray(config.wind.times), velocities))
+    if config.turbulence is not None:
+        length = jnp.asarray(config.vehicle.hull.length)
+        found.append(_turbulence(config.turbulence, wind, ground, length))
+    return tuple(found)
+
+
+def _atmosphere(config: ScenarioConfig) -> AbstractAtmosphere:
+    air = config.atmosphere
+    if isinstance(air, ConstantAir):
+        return ConstantAtmosphere(jnp.asarray(air.density))
+    return StandardAtmosphere(jnp.asarray(air.origin_altitude), jnp.asarray(air.temperature_offset))
+
+
+def build_environment(config: ScenarioConfig) -> Environment:
+    """Return air, wind, gusts, fluctuations and ground."""
+    height = config.ground.anchor_height
+    ground = jnp.asarray(0.0 if height is None else height)
+    effect = config.ground.effect_coefficient
+    wind = _wind(config.wind, ground)
+    return Environment(
+        gravity=jnp.array([0.0, 0.0, STANDARD_GRAVITY]),
+        atmosphere=_atmosphere(config),
+        wind=wind,
+        gusts=tuple(_gust(gust, config.wind.speed) for gust in config.gusts),
+        fluctuations=_fluctuations(config, wind, ground),
+        ground_effect=None if effect is None else GroundEffect(jnp.asarray(effect), ground),
+        ground=ground,
+    )

@@ -1,0 +1,141 @@
+"""What a scenario file may say of the wind: mean, gusts, turbulence. Depends on: scenario.quantity."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from tethership.scenario.quantity import Quantity, Table, Vector
+
+Angle = Annotated[float, Quantity("rad")]
+Speed = Annotated[float, Quantity("m/s", low=0.0)]
+Metres = Annotated[float, Quantity("m", positive=True)]
+Seconds = Annotated[float, Quantity("s", positive=True)]
+
+
+class UniformWindConfig(Table):
+    """The same wind everywhere; `from_direction` is where it comes from, clockwise from north."""
+
+    model: Literal["uniform"] = "uniform"
+    speed: Speed
+    from_direction: Angle = 0.0
+
+
+class PowerLawWindConfig(Table):
+    """Wind growing with height; `speed` is that at `reference_height`."""
+
+    model: Literal["power_law"]
+    speed: Speed
+    from_direction: Angle = 0.0
+    reference_height: Metres
+    exponent: Annotated[float, Quantity("1", low=0.0, high=1.0)]
+    lowest_height: Metres = 0.5
+
+
+class LogarithmicWindConfig(Table):
+    """Wind of the neutral surface layer; `speed` is that at `reference_height`, `roughness` the length z₀."""
+
+    model: Literal["logarithmic"]
+    speed: Speed
+    from_direction: Angle = 0.0
+    reference_height: Metres
+    roughness: Metres
+
+    @model_validator(mode="after")
+    def _above(self) -> "LogarithmicWindConfig":
+        if self.reference_height <= self.roughness:
+            raise ValueError(
+                f"reference_height {self.reference_height:g} m must be above the roughness length {self.roughness:g} m"
+            )
+        return self
+
+
+class MeasuredWindConfig(Table):
+    """A measured history, the same everywhere; in a file it is given as `file`, a CSV or netCDF.
+
+    `times` and `velocities` (north, east, down) are what was read; `speed` and `from_direction` are those of its mean
+    and are not to be given by hand.
+    """
+
+    model: Literal["measured"]
+    speed: Speed
+    from_direction: Angle
+    times: Annotated[np.ndarray, Quantity("s", depth=1, array=True)]
+    velocities: Annotated[np.ndarray, Quantity("m/s", depth=2, array=True)]
+
+    @model_validator(mode="after")
+    def _samples(self) -> "MeasuredWindConfig":
+        if self.velocities.shape != (len(self.times), 3) or len(self.times) < 4:
+            raise ValueError(
+                f"times {self.times.shape} and velocities {self.velocities.shape} must be (n,) and (n, 3), n at least 4"
+            )
+        if np.any(np.diff(self.times) <= 0):
+            raise ValueError(f"times must rise; sample {int(np.argmax(np.diff(self.times) <= 0)) + 1} does not")
+        return self
+
+
+AnyWindConfig = UniformWindConfig | PowerLawWindConfig | LogarithmicWindConfig | MeasuredWindConfig
+"""Every model of the mean wind."""
+
+WindConfig = Annotated[AnyWindConfig, Field(discriminator="model")]
+
+
+class GustConfig(Table):
+    """A gust whose peak is a `fraction` of the wind, or a `speed`.
+
+    `shape` is one pulse ½A(1 − cos), those pulses `repeated` to the end, or one period of a bare `cosine`, which
+    begins and ends with a jump. One pulse may `turn` about the vertical while it lasts, clockwise seen from above.
+    """
+
+    fraction: Annotated[float, Quantity("1", low=0.0)] | None = None
+    speed: Speed | None = None
+    from_direction: Angle
+    upward_angle: Angle = 0.0
+    start: Annotated[float, Quantity("s", low=0.0)]
+    period: Seconds
+    shape: Literal["one_minus_cosine", "repeated", "cosine"] = "one_minus_cosine"
+    turn: Angle = 0.0
+
+    @model_validator(mode="after")
+    def _one_amplitude(self) -> "GustConfig":
+        if (self.fraction is None) == (self.speed is None):
+            raise ValueError("give either fraction (of the wind) or speed, not both and not neither")
+        return self
+
+    @model_validator(mode="after")
+    def _turning(self) -> "GustConfig":
+        if self.turn != 0.0 and self.shape != "one_minus_cosine":
+            raise ValueError(f"a gust of shape {self.shape!r} cannot turn; take out turn or use one_minus_cosine")
+        return self
+
+
+class TurbulenceConfig(Table):
+    """Continuous turbulence about the mean wind, as a record made from `seed`.
+
+    Scales and intensities are those of MIL-F-8785C below 1000 ft at `height`, the intensities times `intensity`;
+    `lengths` and `deviations` (along the wind, across, vertical) replace them. `averaged` takes the mean over the
+    hull's length, with `gradients` the hull feels the difference from nose to tail too.
+    """
+
+    spectrum: Literal["dryden", "von_karman"] = "dryden"
+    seed: Annotated[float, Quantity("1", low=0.0, high=2.0**31 - 1)] = 1.0
+    height: Metres = 6.096
+    intensity: Annotated[float, Quantity("1", low=0.0)] = 1.0
+    lengths: Annotated[Vector, Quantity("m", depth=1, positive=True)] | None = None
+    deviations: Annotated[Vector, Quantity("m/s", depth=1, low=0.0)] | None = None
+    averaged: bool = True
+    gradients: bool = False
+
+    @model_validator(mode="after")
+    def _waves_longer_than_the_hull(self) -> "TurbulenceConfig":
+        if self.gradients and not self.averaged:
+            raise ValueError("gradients are those of the air averaged over the hull; leave averaged = true")
+        return self
+
+    @model_validator(mode="after")
+    def _whole_seed(self) -> "TurbulenceConfig":
+        if self.seed != int(self.seed):
+            raise ValueError(f"seed {self.seed:g} must be a whole number")
+        if (self.lengths is None) != (self.deviations is None):
+            raise ValueError("give lengths and deviations together, or neither for those of MIL-F-8785C")
+        return self

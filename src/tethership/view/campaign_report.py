@@ -1,0 +1,309 @@
+"""A campaign's report and tables: what its flights say, for people. Depends on: view, campaign (its data)."""
+
+import csv
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure as Drawing
+
+from tethership.campaign.answers import exceeded
+from tethership.campaign.plan import Plan
+from tethership.campaign.probability import running
+from tethership.view import campaign_figures as figures
+from tethership.view.report import Figure, Section, Table, write_report
+
+METRICS = {
+    "docking_time": "time to dock [s]",
+    "tension_max": "largest tension [N]",
+    "tension_mean": "mean tension [N]",
+    "ADC": "ADC [1/s]",
+    "E": "E [-]",
+    "theta_rms": "θ_RMS [deg]",
+}
+"""Metrics in words."""
+
+
+def write_campaign(
+    folder: Path, plan: Plan, data: xr.Dataset, answers: dict[str, Any], footer: Mapping[str, Any]
+) -> list[Path]:
+    """Write report.html, its figures and the tables as CSV into a campaign's folder; returns what was written.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the campaign.
+    plan : Plan
+        What was flown.
+    data : xr.Dataset
+        Its results.
+    answers : dict
+        From `campaign.answers.answer`, with `kept` flights.
+    footer : mapping
+        Versions and provenance.
+    """
+    (folder / "figures").mkdir(exist_ok=True)
+    flags = exceeded(plan, data)
+    sections = [
+        _varied(plan),
+        _compliance(answers),
+        _exceedance(folder, plan, data, answers, flags),
+        _pairs(answers),
+        _tails(folder, data, answers),
+        _importance(folder, answers),
+        _checks(answers),
+    ]
+    written = [_exceedance_csv(folder, answers), _flights_csv(folder, plan, data, flags)]
+    path = write_report(
+        folder / "report.html",
+        plan.config.title,
+        _abstract(plan, answers),
+        [s for s in sections if s is not None],
+        footer,
+    )
+    return [path, *written]
+
+
+def _abstract(plan: Plan, answers: dict[str, Any]) -> list[str]:
+    """Return the summary."""
+    verdicts = [row["verdict"] for row in answers["compliance"]]
+    lines = [
+        f"{plan.config.description}. {answers['cases']} cases of `{plan.config.scenario}`, formulation "
+        f"`{plan.scenario.formulation}`, sampling `{answers['sampling']}`, seed {plan.config.seed}, flown under "
+        f"{len(plan.laws)} law{'s' * (len(plan.laws) > 1)}: {answers['runs']} flights, {answers['failed']} failed. "
+        "A flight that failed counts as passing every limit."
+    ]
+    if verdicts:
+        counted = ", ".join(f"**{verdicts.count(word)}** {word}" for word in ("met", "not met", "open"))
+        lines.append(f"Requirements: {counted}. Open means that the interval holds the allowed probability: fly more.")
+    return lines
+
+
+def _varied(plan: Plan) -> Section:
+    """Return what varies."""
+    cells = []
+    for i, (name, spread) in enumerate(plan.config.vary.items()):
+        shown = _numbers(spread)
+        unit = "× the scenario's" if spread.relative else spread.unit
+        column = plan.sample.values[:, i]
+        cells.append([f"`{name}`", spread.distribution, shown, unit, float(column.min()), float(column.max())])
+    heads = ["quantity", "distribution", "numbers", "unit", "least drawn [SI]", "largest drawn [SI]"]
+    return Section(
+        "What varies", ["All cases are drawn before the first is flown."], [Table("Distributions.", heads, cells)]
+    )
+
+
+def _numbers(spread: Any) -> str:
+    """Return the numbers of a distribution in words; a bound that is none is left out."""
+    numbers = spread.model_dump(exclude_none=True, exclude={"distribution", "unit", "relative"})
+    given = {key: value for key, value in numbers.items() if not (isinstance(value, float) and np.isinf(value))}
+    words = (f"{key} {value:g}" if isinstance(value, float | int) else f"{key} {value}" for key, value in given.items())
+    return ", ".join(words)
+
+
+def _compliance(answers: dict[str, Any]) -> Section | None:
+    """Return the requirements with their verdicts."""
+    if not answers["compliance"]:
+        return None
+    cells = [
+        [r["requirement"], r["law"], r["allowed"], r["probability"], _interval(r), r["confidence"], r["verdict"]]
+        for r in answers["compliance"]
+    ]
+    heads = ["requirement", "law", "allowed", "found", "interval", "confidence", "verdict"]
+    words = ["*Met* where the whole interval is at or below what is allowed, *not met* where it is above, else *open*."]
+    return Section("Compliance", words, [Table("Requirements.", heads, cells, verdict_column=6)])
+
+
+def _interval(row: Mapping[str, Any]) -> str | None:
+    return None if row["low"] is None else f"{row['low']:.4g} … {row['high']:.4g}"
+
+
+def _exceedance(
+    folder: Path, plan: Plan, data: xr.Dataset, answers: dict[str, Any], flags: dict[str, np.ndarray]
+) -> Section:
+    """Return the probability of passing each limit, with pictures."""
+    cells = []
+    for law, of in answers["laws"].items():
+        cells += [
+            [limit.replace("_", " "), law, row["exceeding"], row["probability"], _interval(row), row["method"]]
+            for limit, row in of["exceedance"].items()
+        ]
+    heads = ["limit", "law", "flights", "probability", "interval", "method"]
+    times = [
+        [law, *(of["docking_time"].get(key) for key in ("count", "p5", "p50", "p95"))]
+        for law, of in answers["laws"].items()
+    ]
+    shown = [
+        Table("Probability of passing each limit.", heads, cells),
+        Table("Time to dock of those that do [s].", ["law", "docked", "5 %", "median", "95 %"], times),
+    ]
+    drawn = _limit_figures(folder, plan, data, answers, flags)
+    return Section("Limits", ["Tensions are those at the tether point."], shown, drawn)
+
+
+TENSIONS = ("control threshold", "tear", "tensile", "break")
+"""The scenario's watched tensions in words."""
+
+
+def _limit_figures(
+    folder: Path, plan: Plan, data: xr.Dataset, answers: dict[str, Any], flags: dict[str, np.ndarray]
+) -> list[Figure]:
+    """Return pictures of peaks, times and convergence."""
+    laws = [law.name for law in plan.laws]
+    tensions: dict[str, float] = dict(zip(TENSIONS, plan.scenario.config.watched_tensions(), strict=True))
+    peaks = {law: data["tension_max"].values[i] for i, law in enumerate(laws)}
+    times = {law: data["docking_time"].values[i] for i, law in enumerate(laws)}
+    drawn = [
+        _figure(folder, "peaks", figures.plot_peaks(peaks, tensions), "Share of flights whose peak passes a tension."),
+        _figure(folder, "times", figures.plot_times(times, plan.config.limits.time), "Time to dock."),
+    ]
+    confidence = answers["confidence"]
+    passed = {name: of[0] for name, of in flags.items() if 0 < of[0].sum() < of[0].size}
+    if answers["sampling"] == "random" and passed:
+        settling = {name: running(of, confidence) for name, of in passed.items()}
+        text = f"How the probabilities of `{laws[0]}` settle with the number of flights."
+        drawn.append(_figure(folder, "convergence", figures.plot_convergence(settling, confidence), text))
+    return drawn
+
+
+def _pairs(answers: dict[str, Any]) -> Section | None:
+    """Return laws compared case by case."""
+    if not answers["pairs"]:
+        return None
+    shown = []
+    for pair in answers["pairs"]:
+        cells = [
+            [
+                METRICS[m["name"]],
+                m["first"],
+                m["second"],
+                m["difference"],
+                f"{m['low']:.4g} … {m['high']:.4g}",
+                m["lower"],
+                m["p_value"],
+            ]
+            for m in pair["metrics"]
+        ]
+        heads = [
+            "metric",
+            pair["first"],
+            pair["second"],
+            "mean difference",
+            "95 % interval",
+            "share lower",
+            "Wilcoxon p",
+        ]
+        shown.append(Table(f"{pair['second']} against {pair['first']}, case by case.", heads, cells))
+        cells = [
+            [e["name"].replace("_", " "), e["only_first"], e["only_second"], e["both"], e["p_value"]]
+            for e in pair["limits"]
+        ]
+        heads = ["limit", f"only {pair['first']}", f"only {pair['second']}", "both", "McNemar p"]
+        shown.append(Table(f"Cases that pass a limit under {pair['first']} and {pair['second']}.", heads, cells))
+    return Section("Laws compared", ["Every law flew the same cases, so differences are taken case by case."], shown)
+
+
+def _tails(folder: Path, data: xr.Dataset, answers: dict[str, Any]) -> Section | None:
+    """Return the tails of the peak tension."""
+    shown, drawn = [], []
+    for i, (law, of) in enumerate(answers["laws"].items()):
+        tail = of["tail"]
+        if tail is None:
+            continue
+        cells = [
+            [level["probability"], level["level"], f"{level['low']:.4g} … {level['high']:.4g}"]
+            for level in tail["levels"]
+        ]
+        note = (
+            f"Generalised Pareto over {tail['threshold']:.0f} N, {tail['excesses']} excesses: "
+            f"shape {tail['shape']:.3f}, scale {tail['scale']:.1f} N; Kolmogorov distance {tail['distance']:.3f}"
+            + (f"; the tail ends at {tail['end']:.0f} N." if tail["end"] is not None else "; the tail has no end.")
+        )
+        heads = ["probability per flight", "tension [N]", "interval [N]"]
+        shown.append(Table(f"Tension exceeded with a probability, {law}.", heads, cells, note))
+        picture = figures.plot_tail(data["tension_max"].values[i], tail)
+        drawn.append(_figure(folder, f"tail_{law}", picture, f"Tail of the peak tension, {law}."))
+    if not shown:
+        return None
+    words = ["Levels beyond the flights are extrapolated; their interval is of the fit alone, not of the model."]
+    return Section("Extremes", words, shown, drawn)
+
+
+def _importance(folder: Path, answers: dict[str, Any]) -> Section:
+    """Return what the peak tension hangs on."""
+    shown, drawn = [], []
+    for law, of in answers["laws"].items():
+        entries = of["importance"]
+        cells = [[f"`{e['name']}`", e["rank_correlation"], e["p_value"], e["first"], e["total"]] for e in entries]
+        heads = ["quantity", "rank correlation", "p", "Sobol first order", "Sobol total"]
+        shown.append(Table(f"What the peak tension hangs on, {law}.", heads, cells))
+        text = f"What the peak tension hangs on, {law}."
+        drawn.append(_figure(folder, f"importance_{law}", figures.plot_importance(entries), text))
+    words = ['Rank correlation sees what rises or falls throughout; Sobol\'s indices need `sampling = "saltelli"`.']
+    return Section("Sensitivity", words, shown, drawn)
+
+
+def _checks(answers: dict[str, Any]) -> Section:
+    """Return what the fixed steps cost, and the flights that were kept."""
+    error = answers["step_error"]
+    cells = [
+        [METRICS[name], 100.0 * entry["median"], 100.0 * entry["largest"]]
+        for name, entry in error.items()
+        if isinstance(entry, dict)
+    ]
+    kept = [[k["law"], k["case"], k["why"], k["file"] or k.get("error")] for k in answers.get("kept", [])]
+    shown = [Table("Fixed steps against tight adaptive flights.", ["metric", "median [%]", "largest [%]"], cells)]
+    if kept:
+        shown.append(Table("Flights kept with their histories.", ["law", "case", "why", "file"], kept))
+    outcomes = [[law, name, count] for law, of in answers["laws"].items() for name, count in of["outcomes"].items()]
+    shown.append(Table("How the flights ended.", ["law", "outcome", "flights"], outcomes))
+    words = [f"{error['flights']} flights, drawn at random, were flown again adaptively to tight tolerance."]
+    return Section("Checks", words, shown)
+
+
+def _figure(folder: Path, name: str, drawing: Drawing, caption: str) -> Figure:
+    """Write a picture and return it as a figure of the report."""
+    path = folder / "figures" / f"{name}.png"
+    drawing.savefig(path, dpi=140)
+    return Figure(caption, path, None, caption)
+
+
+def _exceedance_csv(folder: Path, answers: dict[str, Any]) -> Path:
+    """Write the probabilities; returns where."""
+    path = folder / "exceedance.csv"
+    keys = ("exceeding", "flights", "probability", "low", "high", "confidence", "method")
+    rows = [
+        [law, limit, *(row[key] for key in keys)]
+        for law, of in answers["laws"].items()
+        for limit, row in of["exceedance"].items()
+    ]
+    return _csv(path, ["law", "limit", *keys], rows)
+
+
+def _flights_csv(folder: Path, plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray]) -> Path:
+    """Write every flight, a row each: what was drawn, how it ended, its metrics, limits passed; returns where."""
+    from tethership.simulation.batch import CODES
+
+    names = [name for name in METRICS if name in data]
+    head = ["law", "case", *plan.sample.names, "outcome", *names, *flags]
+    columns: Callable[[int, int], list[Any]] = lambda law, case: [  # noqa: E731
+        plan.laws[law].name,
+        case,
+        *plan.sample.values[case],
+        CODES[int(data["outcome"].values[law, case])].name,
+        *(data[name].values[law, case] for name in names),
+        *(int(of[law, case]) for of in flags.values()),
+    ]
+    rows = (columns(law, case) for law in range(len(plan.laws)) for case in range(plan.cases))
+    return _csv(folder / "flights.csv", head, rows)
+
+
+def _csv(path: Path, head: list[str], rows: Any) -> Path:
+    """Write a table as CSV; returns where."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(head)
+        writer.writerows(rows)
+    return path

@@ -1,0 +1,225 @@
+"""Campaigns flown for real: batches, resuming after SIGKILL, a Dask cluster that loses a worker, what is refused."""
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tethership as ts
+from tethership.campaign.answers import answer, exceeded, failed
+from tethership.campaign.execute import fly_campaign, in_this_process
+from tethership.campaign.plan import make_plan
+from tethership.campaign.store import CampaignStore, open_results
+from tethership.campaign.work import fly_one
+from tethership.errors import ConfigError
+
+COMMAND = [sys.executable, "-m", "tethership"]
+CASES = ["--samples", "48"]
+
+
+def run(*arguments, **options):
+    """Run the command, check that it went well, and return its JSON."""
+    done = subprocess.run([*COMMAND, *map(str, arguments), "--json"], capture_output=True, text=True, **options)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """48 cases under three laws, six batches, not interrupted: the folder and what was said."""
+    folder = tmp_path_factory.mktemp("whole") / "layers"
+    return folder, run("campaign", "layers", *CASES, "--out", folder)
+
+
+@pytest.fixture(scope="module")
+def plan():
+    return make_plan("layers", {"samples": 48})
+
+
+def marks(folder):
+    return list((folder / "finished").glob("*"))
+
+
+def same(first, second):
+    """Assert that two campaigns have the same numbers, bit for bit."""
+    one, other = open_results(first), open_results(second)
+    assert set(one) == set(other)
+    for name in one:
+        assert np.array_equal(one[name].values, other[name].values, equal_nan=True), name
+
+
+def test_command_says_runs_failed_and_exceedance(whole):
+    folder, said = whole
+    assert said["runs"] == 144
+    assert said["failed"] == 0
+    for limit in ("control_threshold", "envelope_tear", "cable_break", "winch_pull", "attitude", "time"):
+        row = said["exceedance"][limit]
+        assert 0.0 <= row["low"] <= row["probability"] <= row["high"] <= 1.0
+    assert {row["verdict"] for row in said["compliance"]} <= {"met", "not met", "open"}
+    for path in said["files"]:
+        assert Path(path).exists()
+    assert "What varies" in (folder / "report.html").read_text(encoding="utf-8")
+    assert len((folder / "flights.csv").read_text(encoding="utf-8").splitlines()) == 145
+
+
+def test_histories_are_kept_of_the_worst_and_of_some(whole):
+    folder, said = whole
+    chosen = [kept for kept in said["kept"] if kept["why"] == "worst" and kept["law"] == "rewind"]
+    worst = [ts.Flight.load(folder / kept["file"]).metrics["tension_max"] for kept in chosen]
+    peaks = np.sort(open_results(folder)["tension_max"].values[0])
+    assert len(worst) == 3
+    assert min(worst) > 0.9 * peaks[-3]
+
+
+def test_a_case_of_the_batch_is_the_single_flight(whole, plan):
+    data = open_results(whole[0])
+    peaks = data["tension_max"].values[0]
+    gentle = int(np.argsort(peaks)[len(peaks) // 4])
+    alone = fly_one(plan.scenario, plan.names, plan.values[0, gentle], "tight")
+    assert alone.metrics["tension_mean"] == pytest.approx(float(data["tension_mean"].values[0, gentle]), rel=2e-3)
+
+
+def test_every_case_has_its_own_turbulence(whole):
+    theta = open_results(whole[0])["theta_rms"].values
+    assert len(np.unique(theta)) == 144
+
+
+def test_killed_and_started_again_it_ends_bit_identical(whole, tmp_path):
+    folder = tmp_path / "layers"
+    command = [*COMMAND, "campaign", "layers", *CASES, "--out", str(folder), "--workers", "1", "--json"]
+    started = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+    limit = time.monotonic() + 200
+    while not marks(folder) and time.monotonic() < limit and started.poll() is None:
+        time.sleep(0.01)
+    os.killpg(started.pid, signal.SIGKILL)
+    started.wait()
+    before = {mark.name: mark.stat().st_mtime_ns for mark in marks(folder)}
+    assert 0 < len(before) < 6
+    said = run("campaign", "layers", *CASES, "--out", folder)
+    assert said["flown"] == 24 * (6 - len(before))
+    assert before.items() <= {mark.name: mark.stat().st_mtime_ns for mark in marks(folder)}.items()
+    same(whole[0], folder)
+
+
+def test_a_batch_without_its_mark_is_flown_again(whole, tmp_path, plan):
+    folder = tmp_path / "layers"
+    shutil.copytree(whole[0], folder)
+    (folder / "finished" / "000001").unlink()
+    store = CampaignStore(folder, plan)
+    store._array("tension_max", np.zeros(1))[0, 24:] = -1.0  # as a write cut off would leave it
+    with in_this_process() as hands:
+        assert fly_campaign(plan, store, hands) == 24
+    same(whole[0], folder)
+
+
+def test_a_finished_campaign_flies_nothing(whole):
+    folder, said = whole
+    again = run("campaign", "layers", *CASES, "--out", folder)
+    assert again["flown"] == 0
+    assert again["exceedance"] == said["exceedance"]
+
+
+@pytest.mark.parametrize(
+    "other", [["--seed", "2"], ["--samples", "47"], ["--wind", "9"], ["--set", "stop.time_limit=90"]]
+)
+def test_another_campaign_in_the_folder_is_refused_and_nothing_touched(whole, other):
+    folder, _ = whole
+    before = (folder / "campaign.json").read_bytes(), sorted(marks(folder))
+    done = subprocess.run(
+        [*COMMAND, "campaign", "layers", *CASES, *other, "--out", str(folder)], capture_output=True, text=True
+    )
+    assert done.returncode == 2
+    assert "--out" in done.stderr
+    assert before == ((folder / "campaign.json").read_bytes(), sorted(marks(folder)))
+
+
+def test_a_store_of_another_version_is_refused(whole, tmp_path, plan):
+    folder = tmp_path / "old"
+    shutil.copytree(whole[0], folder)
+    manifest = json.loads((folder / "campaign.json").read_text())
+    manifest |= {"tethership": "0.0.1", "digest": "x"}
+    (folder / "campaign.json").write_text(json.dumps(manifest))
+    with pytest.raises(ConfigError, match=re.escape("a campaign of tethership 0.0.1")):
+        CampaignStore(folder, plan)
+
+
+def test_disk_full_keeps_what_is_done(tmp_path, plan, monkeypatch):
+    store = CampaignStore(tmp_path / "full", plan)
+    batch = plan.batch(0)
+    store.keep(batch, {"tension_max": np.ones(24)})
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(store, "_array", full)
+    with pytest.raises(ConfigError, match=r"No space left on device.*run the same command again"):
+        store.keep(plan.batch(1), {"tension_max": np.ones(24)})
+    assert open_results(tmp_path / "full")["tension_max"].values[0, :24].sum() == 24
+    assert store.unfinished() == [1, 2, 3, 4, 5]
+
+
+def test_failed_flights_count_against_every_limit(whole, plan):
+    data = open_results(whole[0]).copy(deep=True)
+    data["unbalanced"].values[0, 0] = 1.0
+    data["unbalanced"].values[0, 1] = np.nan
+    assert failed(data).sum() == 2
+    assert all(flags[0, :2].all() for flags in exceeded(plan, data).values())
+    assert answer(plan, data)["failed"] == 2
+
+
+def test_no_scheduler_is_said_in_one_line():
+    done = subprocess.run(
+        [*COMMAND, "campaign", "layers", *CASES, "--scheduler", "tcp://127.0.0.1:9", "--out", "x"],
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 2
+    assert "no scheduler answers at tcp://127.0.0.1:9" in done.stderr.splitlines()[-1]
+
+
+@pytest.fixture
+def cluster(tmp_path):
+    """A scheduler and two workers on loopback: the address and the workers' processes."""
+    pytest.importorskip("distributed")
+    file = tmp_path / "scheduler.json"
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": tmp_path}
+    dask = [sys.executable, "-m", "dask"]
+    common = ["--no-dashboard", "--scheduler-file", str(file)]
+    processes = [
+        subprocess.Popen(
+            [*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", *common], **quiet, start_new_session=True
+        )
+    ]
+    limit = time.monotonic() + 60
+    while not file.exists() and time.monotonic() < limit:
+        time.sleep(0.1)
+    worker = [*dask, "worker", "--nworkers", "1", "--nthreads", "1", "--no-nanny", *common]
+    processes += [subprocess.Popen(worker, **quiet, start_new_session=True) for _ in range(2)]
+    yield json.loads(file.read_text())["address"], processes[1:]
+    for process in processes:
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+
+
+def test_a_cluster_that_loses_a_worker_loses_nothing(whole, cluster, tmp_path):
+    address, workers = cluster
+    folder = tmp_path / "layers"
+    command = [*COMMAND, "campaign", "layers", *CASES, "--out", str(folder), "--scheduler", address, "--json"]
+    started = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    limit = time.monotonic() + 200
+    while not marks(folder) and time.monotonic() < limit and started.poll() is None:
+        time.sleep(0.01)
+    os.killpg(workers[0].pid, signal.SIGKILL)
+    output, errors = started.communicate(timeout=300)
+    assert started.returncode == 0, errors
+    assert json.loads(output)["runs"] == 144
+    same(whole[0], folder)

@@ -1,0 +1,127 @@
+"""What a campaign's numbers say, each against a closed form or a textbook's figure."""
+
+import numpy as np
+import pytest
+import scipy.stats
+
+from tethership.campaign.extremes import fit_tail
+from tethership.campaign.importance import rank_importance, sobol_importance
+from tethership.campaign.paired import paired_limit, paired_metric
+from tethership.campaign.probability import clopper_pearson1934, estimate, running
+from tethership.campaign.sampling import saltelli_design
+
+
+def test_no_event_in_n_flights_has_the_upper_end_of_the_closed_form():
+    low, high = clopper_pearson1934(0, 300, 0.95)
+    assert low == 0.0
+    assert high == pytest.approx(1.0 - 0.025 ** (1 / 300), rel=1e-9)
+
+
+def test_interval_is_that_of_the_beta_distribution():
+    low, high = clopper_pearson1934(7, 100, 0.9)
+    assert low == pytest.approx(scipy.stats.beta.ppf(0.05, 7, 94), rel=1e-9)
+    assert high == pytest.approx(scipy.stats.beta.ppf(0.95, 8, 93), rel=1e-9)
+
+
+def test_interval_covers_the_truth_as_often_as_it_says():
+    generator = np.random.default_rng(0)
+    inside = 0
+    for _ in range(400):
+        found = estimate(generator.random(200) < 0.03, "random", np.zeros(200), 0.9)
+        inside += found.low <= 0.03 <= found.high
+    # Clopper–Pearson is conservative: at least 90 %; 3 σ of 400 trials is 4.5 %
+    assert inside / 400 > 0.9 - 0.045
+
+
+def test_scrambles_never_get_a_binomial_interval():
+    flags = np.zeros(800, bool)
+    flags[::40] = True
+    replicate = np.repeat(np.arange(8), 100)
+    flags[0] = False
+    found = estimate(flags, "sobol", replicate)
+    shares = [flags[replicate == r].mean() for r in range(8)]
+    reach = scipy.stats.t.ppf(0.975, 7) * np.std(shares, ddof=1) / np.sqrt(8)
+    assert found.method == "scrambled replicates"
+    assert found.high - found.probability == pytest.approx(reach)
+
+
+def test_scrambles_that_all_agree_give_no_interval():
+    found = estimate(np.zeros(800, bool), "latin_hypercube", np.repeat(np.arange(8), 100))
+    assert found.low is None
+    assert found.high is None
+    assert "random" in found.method
+
+
+def test_grid_gives_a_share_without_an_interval():
+    assert estimate(np.array([True, False]), "grid", np.zeros(2)).low is None
+
+
+def test_running_ends_at_the_whole():
+    flags = np.random.default_rng(1).random(500) < 0.2
+    path = running(flags)
+    assert path["probability"][-1] == flags.mean()
+    assert np.all(path["low"] <= path["probability"])
+
+
+@pytest.mark.parametrize("shape", [-0.2, 0.0, 0.2])
+def test_tail_of_a_known_distribution_is_found(shape):
+    values = scipy.stats.genpareto.rvs(shape, scale=100.0, size=20_000, random_state=3)
+    tail = fit_tail(values, draws=60)
+    level, low, high = tail.level(1e-4)
+    exact = scipy.stats.genpareto.isf(1e-4, shape, scale=100.0)
+    # 2 000 excesses: standard deviation of ξ about (1 + ξ)/√2000 = 0.022; 3 σ
+    assert tail.shape == pytest.approx(shape, abs=0.08)
+    assert low < exact < high or level == pytest.approx(exact, rel=0.15)
+    assert (tail.end is None) == (tail.shape >= 0)
+
+
+def test_level_at_the_threshold_s_own_share_is_the_threshold():
+    tail = fit_tail(np.random.default_rng(0).exponential(size=2000), draws=20)
+    assert tail.level(tail.share)[0] == pytest.approx(tail.threshold)
+
+
+def test_too_few_flights_have_no_tail():
+    assert fit_tail(np.random.default_rng(0).exponential(size=100)) is None
+    assert fit_tail(np.ones(5000)) is None
+
+
+def test_rank_correlation_sees_what_rises_whatever_its_shape():
+    x = np.random.default_rng(0).random((400, 3))
+    found = rank_importance(("a", "b", "c"), x, np.exp(5 * x[:, 1]) - 0.01 * x[:, 0])
+    assert found[0].name == "b"
+    assert found[0].rank_correlation > 0.99
+    assert abs(found[2].rank_correlation) < 0.2
+
+
+def test_sobol_indices_are_those_of_ishigami():
+    # Ishigami and Homma (1990), a = 7, b = 0.1: S = 0.3139, 0.4424, 0; S_T = 0.5576, 0.4424, 0.2437
+    size = 4096
+    x = np.pi * (2.0 * saltelli_design(size * 5, 3, 1) - 1.0)
+    output = np.sin(x[:, 0]) + 7 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
+    found = {entry.name: entry for entry in sobol_importance(("a", "b", "c"), x, output)}
+    for name, first, total in (("a", 0.3139, 0.5576), ("b", 0.4424, 0.4424), ("c", 0.0, 0.2437)):
+        assert found[name].first == pytest.approx(first, abs=0.02)
+        assert found[name].total == pytest.approx(total, abs=0.02)
+        assert found[name].total_low <= found[name].total <= found[name].total_high
+
+
+def test_pairs_see_a_small_shift_that_the_spread_of_cases_hides():
+    generator = np.random.default_rng(0)
+    first = generator.normal(100.0, 30.0, 300)
+    found = paired_metric("tension_max", first, first - 1.0 + generator.normal(0.0, 1.0, 300))
+    assert found.high < 0.0
+    assert found.p_value < 1e-6
+    assert 0.5 < found.lower < 1.0
+
+
+def test_pairs_leave_out_what_only_one_has():
+    first, second = np.array([1.0, np.nan, 3.0, 4.0]), np.array([2.0, 2.0, np.nan, 5.0])
+    assert paired_metric("E", first, second) is None
+
+
+def test_mcnemar_looks_at_discordant_cases_only():
+    first = np.array([True] * 60 + [False] * 40)
+    second = np.array([True] * 50 + [False] * 50)
+    found = paired_limit("time", first, second)
+    assert (found.only_first, found.only_second, found.both) == (10, 0, 50)
+    assert found.p_value == pytest.approx(2 * 0.5**10)
