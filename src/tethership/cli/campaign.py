@@ -2,6 +2,7 @@
 
 import platform
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -18,7 +19,8 @@ from tethership.cli.common import (
     table,
     writable_folder,
 )
-from tethership.cli.progress import progress_bar
+from tethership.cli.progress import Report, progress_bar
+from tethership.errors import SolveError
 
 EXAMPLE = "Example: tethership campaign gusts --samples 1000 --workers 2"
 
@@ -62,22 +64,30 @@ def campaign(
     writable_folder(folder)
     begun = time.perf_counter()
     with progress_bar(f"campaign {Path(name).stem}") as report:
-        found = run_campaign(
-            name,
-            folder,
-            own,
-            _scenario_changes(wind, formulation, changes),
-            workers,
-            scheduler,
-            confidence,
-            lambda done, total: report(f"{done} of {total} flights", done / total),
-        )
+        varied = _scenario_changes(wind, formulation, changes)
+        try:
+            found = run_campaign(name, folder, own, varied, workers, scheduler, confidence, _counted(report))
+        except KeyboardInterrupt:
+            raise SolveError(f"interrupted; what is flown is in {folder}: run the same command to go on") from None
     result = _concluded(found, folder)
     result["seconds"] = round(time.perf_counter() - begun, 1)
     if json:
         print_json(result)
     else:
         _print(result)
+
+
+def _counted(report: Report) -> Callable[[int, int], None]:
+    """Return a progress that says flights, and their rate since the start of this run."""
+    begun, first = time.perf_counter(), -1
+
+    def progress(done: int, total: int) -> None:
+        nonlocal first
+        first = done if first < 0 else first
+        rate = (done - first) / max(time.perf_counter() - begun, 1e-9)
+        report(f"{done} of {total} flights, {rate:.0f}/s", done / total)
+
+    return progress
 
 
 def _scenario_changes(wind: float | None, formulation: str | None, changes: list[str] | None) -> dict[str, Any]:
