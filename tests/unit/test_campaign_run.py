@@ -175,9 +175,9 @@ def test_failed_flights_count_against_every_limit(whole, plan):
     assert answer(plan, data)["failed"] == 2
 
 
-def test_no_scheduler_is_said_in_one_line():
+def test_no_scheduler_is_said_in_one_line(tmp_path):
     done = subprocess.run(
-        [*COMMAND, "campaign", "layers", *CASES, "--scheduler", "tcp://127.0.0.1:9", "--out", "x"],
+        [*COMMAND, "campaign", "layers", *CASES, "--scheduler", "tcp://127.0.0.1:9", "--out", str(tmp_path / "x")],
         capture_output=True,
         text=True,
     )

@@ -75,6 +75,18 @@ def test_tail_of_a_known_distribution_is_found(shape):
     assert (tail.end is None) == (tail.shape >= 0)
 
 
+def test_censored_peaks_do_not_bend_the_tail():
+    generator = np.random.default_rng(5)
+    values = generator.exponential(100.0, 20_000)
+    end = 300.0  # 5 % of the flights break their cable
+    tail = fit_tail(np.minimum(values, end), values > end, draws=40)
+    assert tail.censored == np.sum(values > end)
+    assert tail.shape == pytest.approx(0.0, abs=0.1)
+    assert tail.scale == pytest.approx(100.0, rel=0.1)
+    # told nothing of it the fit finds an end that is not there
+    assert fit_tail(np.minimum(values, end), share=0.15, draws=2).shape < -0.3
+
+
 def test_level_at_the_threshold_s_own_share_is_the_threshold():
     tail = fit_tail(np.random.default_rng(0).exponential(size=2000), draws=20)
     assert tail.level(tail.share)[0] == pytest.approx(tail.threshold)

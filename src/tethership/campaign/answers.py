@@ -101,7 +101,7 @@ def _of_law(plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray], law: int
         "outcomes": {code.name: int(np.sum(outcomes == i)) for i, code in enumerate(CODES) if np.any(outcomes == i)},
         "docking_time": _percentiles(data["docking_time"].values[law][rows]),
         "tension_max": _percentiles(data["tension_max"].values[law][rows]),
-        "tail": _tail(plan, data["tension_max"].values[law], confidence),
+        "tail": _tail(plan, data["tension_max"].values[law], outcomes == CODES.index(Outcome.cable_broken), confidence),
         "importance": [entry._asdict() for entry in _importance(plan, data["tension_max"].values[law])],
     }
 
@@ -123,9 +123,9 @@ def _percentiles(values: np.ndarray) -> dict[str, Any]:
     return {"count": len(finite), **named}
 
 
-def _tail(plan: Plan, peaks: np.ndarray, confidence: float) -> dict[str, Any] | None:
+def _tail(plan: Plan, peaks: np.ndarray, broken: np.ndarray, confidence: float) -> dict[str, Any] | None:
     """Return the fitted tail of the peak tension, None where there are too few flights or they are not independent."""
-    fitted = fit_tail(peaks, plan.config.seed) if plan.config.sampling == "random" else None
+    fitted = fit_tail(peaks, broken, plan.config.seed) if plan.config.sampling == "random" else None
     return None if fitted is None else tail_data(fitted, confidence)
 
 
@@ -141,6 +141,7 @@ def tail_data(tail: Tail, confidence: float) -> dict[str, Any]:
         "scale": tail.scale,
         "end": tail.end,
         "excesses": tail.excesses,
+        "censored": tail.censored,
         "distance": tail.distance,
         "levels": levels,
     }

@@ -37,10 +37,10 @@ class Tail(NamedTuple):
         σ, unit of the value.
     shapes, scales, shares : ndarray
         The same of each bootstrap sample, ξ [-], σ and ζ_u.
-    excesses : int
-        Flights above u.
+    excesses, censored : int
+        Flights above u whose peak is known, and whose cable broke at it.
     distance : float
-        Largest distance of fitted and empirical distribution (Kolmogorov) [-].
+        Largest distance of fitted and empirical distribution of the known excesses (Kolmogorov) [-].
     """
 
     threshold: float
@@ -51,6 +51,7 @@ class Tail(NamedTuple):
     scales: np.ndarray
     shares: np.ndarray
     excesses: int
+    censored: int
     distance: float
 
     def level(self, probability: float, confidence: float = 0.95) -> tuple[float, float, float]:
@@ -74,45 +75,61 @@ def _level(threshold: float, share: Any, shape: Any, scale: Any, probability: fl
     return threshold + scale * np.where(flat, logarithm, np.expm1(safe * logarithm) / safe)
 
 
-def fit_tail(values: np.ndarray, seed: int = 1, share: float = SHARE, draws: int = DRAWS) -> Tail | None:
+def fit_tail(
+    values: np.ndarray,
+    censored: np.ndarray | None = None,
+    seed: int = 1,
+    share: float = SHARE,
+    draws: int = DRAWS,
+) -> Tail | None:
     """Fit a generalised Pareto tail to the largest values of independent flights, None where there are too few.
 
     Parameters
     ----------
     values : ndarray
         One peak of each flight.
+    censored : ndarray of bool, optional
+        Flights that ended at their peak (the cable broke): it would have been higher, nobody knows by how much.
     seed : int
         Of the bootstrap.
     share : float
-        Of the flights that lie above the threshold.
+        Of the flights that lie above the threshold and are not censored.
     draws : int
         Bootstrap samples.
+
+    Notes
+    -----
+    Maximum likelihood; a censored flight contributes the probability of a larger excess.
     """
-    finite = values[np.isfinite(values)]
-    if len(finite) * share < FEWEST:
+    kept = np.isfinite(values)
+    over = np.zeros(len(values), bool) if censored is None else censored
+    values, over = values[kept], over[kept]
+    if len(values) == 0 or np.sum(~over) * share < FEWEST:
         return None
-    threshold = float(np.quantile(finite, 1.0 - share))
-    excess = finite[finite > threshold] - threshold
-    if len(excess) < FEWEST or np.ptp(excess) == 0.0:
+    threshold = float(np.quantile(np.where(over, np.inf, values), 1.0 - share - np.mean(over), method="lower"))
+    fitted = _fitted(values, over, threshold)
+    if fitted is None:
         return None
-    shape, _, scale = scipy.stats.genpareto.fit(excess, floc=0.0)
+    shape, scale, above = fitted
     generator = np.random.default_rng(seed)
     drawn = []
     for _ in range(draws):
-        sample = generator.choice(finite, len(finite))
-        own = sample[sample > threshold] - threshold
-        fitted = scipy.stats.genpareto.fit(own, floc=0.0) if len(own) > 5 else (shape, 0.0, scale)
-        drawn.append((fitted[0], fitted[2], len(own) / len(sample)))
+        place = generator.integers(len(values), size=len(values))
+        drawn.append(_fitted(values[place], over[place], threshold) or fitted)
     shapes, scales, shares = np.array(drawn).T
-    distance = scipy.stats.kstest(excess, "genpareto", args=(shape, 0.0, scale)).statistic
-    return Tail(
-        threshold,
-        len(excess) / len(finite),
-        float(shape),
-        float(scale),
-        shapes,
-        scales,
-        shares,
-        len(excess),
-        float(distance),
-    )
+    whole = values[(values > threshold) & ~over] - threshold
+    last = np.max(whole) if np.any(over) else np.inf
+    inside = scipy.stats.genpareto.cdf(last, shape, 0.0, scale)
+    distance = scipy.stats.kstest(whole, lambda x: scipy.stats.genpareto.cdf(x, shape, 0.0, scale) / inside).statistic
+    return Tail(threshold, above, shape, scale, shapes, scales, shares, len(whole), int(np.sum(over)), float(distance))
+
+
+def _fitted(values: np.ndarray, over: np.ndarray, threshold: float) -> tuple[float, float, float] | None:
+    """Return ξ, σ and the share above the threshold, None where the excesses are too few or all the same."""
+    above = (values > threshold) | over
+    whole = values[above & ~over] - threshold
+    if len(whole) < 0.5 * FEWEST or np.ptp(whole) == 0.0:
+        return None
+    data = scipy.stats.CensoredData(uncensored=whole, right=values[above & over] - threshold)
+    shape, _, scale = scipy.stats.genpareto.fit(data, floc=0.0)
+    return float(shape), float(scale), float(np.mean(above))

@@ -103,7 +103,7 @@ class CampaignConfig(Table):
     seed: Annotated[int, Field(ge=0)] = 1
     sampling: Literal["random", "sobol", "latin_hypercube", "grid", "saltelli"] = "random"
     replicates: Annotated[int, Field(ge=4, le=64)] = 8
-    step: Annotated[float, Quantity("s", positive=True, high=0.1)] = 0.025
+    step: Annotated[float, Quantity("s", positive=True, high=0.1)] = 0.05
     verified: Annotated[float, Field(ge=0.0, le=1.0)] = 0.02
     worst: Annotated[int, Field(ge=0, le=100)] = 3
     random: Annotated[int, Field(ge=0, le=100)] = 3

@@ -68,7 +68,8 @@ def plot_convergence(settling: Mapping[str, Mapping[str, np.ndarray]], confidenc
     for i, (name, path) in enumerate(settling.items()):
         colour = COLOURS[i % len(COLOURS)]
         axes.fill_between(path["flights"], path["low"], path["high"], color=colour, alpha=0.15, linewidth=0)
-        axes.semilogx(path["flights"], path["probability"], color=colour, label=name.replace("_", " "))
+        dash = "-" if i < len(COLOURS) else "--"
+        axes.semilogx(path["flights"], path["probability"], dash, color=colour, label=name.replace("_", " "))
     axes.set_xlabel("flights")
     axes.set_ylabel(f"probability, {100 * confidence:g} % interval [-]")
     axes.legend(frameon=False, fontsize=style.FONT)
@@ -88,8 +89,8 @@ def plot_tail(peaks: np.ndarray, tail: Mapping[str, Any]) -> Figure:
     """
     drawn = Figure(figsize=(9.0, 3.9), layout="constrained")
     left, right = drawn.subplots(1, 2)
-    excess = np.sort(peaks[np.isfinite(peaks) & (peaks > tail["threshold"])]) - tail["threshold"]
-    rank = (np.arange(len(excess)) + 0.5) / len(excess)
+    excess = np.sort(peaks[np.isfinite(peaks) & (peaks > tail["threshold"])])[: tail["excesses"]] - tail["threshold"]
+    rank = (np.arange(len(excess)) + 0.5) / (tail["excesses"] + tail["censored"])
     fitted = scipy.stats.genpareto.ppf(rank, tail["shape"], 0.0, tail["scale"])
     left.plot(fitted, excess, ".", color=COLOURS[0], markersize=4)
     top = max(fitted[-1], excess[-1])
@@ -101,6 +102,7 @@ def plot_tail(peaks: np.ndarray, tail: Mapping[str, Any]) -> Figure:
     ends = np.array([[entry["low"], entry["high"]] for entry in tail["levels"]]).T
     right.errorbar(place, level, np.abs(ends - level), fmt="o", color=COLOURS[0], capsize=3)
     right.set_xscale("log")
+    right.set_yscale("log")
     right.invert_xaxis()
     right.set_xlabel("probability per flight [-]")
     right.set_ylabel("tension exceeded with it [N]")

@@ -140,7 +140,16 @@ def _exceedance(
         Table("Time to dock of those that do [s].", ["law", "docked", "5 %", "median", "95 %"], times),
     ]
     drawn = _limit_figures(folder, plan, data, answers, flags)
-    return Section("Limits", ["Tensions are those at the tether point."], shown, drawn)
+    return Section(
+        "Limits",
+        [
+            "Tensions are those at the tether point. Ground contact is a least clearance of the hull below zero: with "
+            "the anchor "
+            "at ground level, as in the paper, almost every docking has it."
+        ],
+        shown,
+        drawn,
+    )
 
 
 TENSIONS = ("control threshold", "tear", "tensile", "break")
@@ -217,7 +226,8 @@ def _tails(folder: Path, data: xr.Dataset, answers: dict[str, Any]) -> Section |
             for level in tail["levels"]
         ]
         note = (
-            f"Generalised Pareto over {tail['threshold']:.0f} N, {tail['excesses']} excesses: "
+            f"Generalised Pareto over {tail['threshold']:.0f} N, {tail['excesses']} excesses and "
+            f"{tail['censored']} broken cables, whose peak is only known to be higher: "
             f"shape {tail['shape']:.3f}, scale {tail['scale']:.1f} N; Kolmogorov distance {tail['distance']:.3f}"
             + (f"; the tail ends at {tail['end']:.0f} N." if tail["end"] is not None else "; the tail has no end.")
         )
