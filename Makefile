@@ -24,6 +24,7 @@ bench: $(VENV)/.installed-dev
 	$(BIN)/python benchmarks/docking.py
 	$(BIN)/python benchmarks/linear.py
 	$(BIN)/python benchmarks/batch.py
+	$(BIN)/python benchmarks/campaign.py
 
 figures: $(VENV)/.installed
 	$(BIN)/tethership dock --wind 12 --layers rewind,heading --out out/readme

@@ -5,6 +5,8 @@
                      cli                                   commands
                     view                                   plots: draws the data it is given
                 reproduction                               the paper's figures and claims; returns data
+                  fitting                                  identification, tuning
+                  campaign                                 many flights, odds
           simulation  │   analysis                         one flight │ trim, linear model, modes, sweeps
                   scenario                                 TOML → system + laws + run settings, validated
             system    │   control                          the plant │ the laws
