@@ -189,6 +189,12 @@ def test_what_cannot_be_is_refused_in_one_line(planned, text, said):
     assert "\n" not in str(error.value)
 
 
+def test_a_number_that_is_set_does_not_vary():
+    plan = make_plan("gusts", {"samples": 20}, {"wind.speed": 9.0})
+    assert "wind.speed" not in plan.names
+    assert plan.scenario.config.wind.speed == 9.0
+
+
 def test_unknown_campaign_offers_the_nearest():
     with pytest.raises(ConfigError, match="did you mean 'gusts'"):
         make_plan("gust")

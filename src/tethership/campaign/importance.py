@@ -2,7 +2,7 @@
 
 References
 ----------
-Saltelli et al., Comput. Phys. Commun. 181 (2010) 259: first-order and total indices from the points A, B and A with one
+Saltelli et al., Computer Physics Communications 181 (2010) 259: first-order and total indices from the points A, B and A with one
 column of B (`sampling.saltelli_design`), as scipy computes them.
 """
 

@@ -146,7 +146,7 @@ def make_plan(name: str, changes: dict[str, Any] | None = None, scenario_changes
     changes : mapping, optional
         Of the campaign's own keys: samples, seed, sampling, …
     scenario_changes : mapping, optional
-        Of the scenario, by dotted name, as in `load_scenario`.
+        Of the scenario, by dotted name, as in `load_scenario`; what is set here does not vary.
 
     Raises
     ------
@@ -156,6 +156,8 @@ def make_plan(name: str, changes: dict[str, Any] | None = None, scenario_changes
     document = {**read_document("campaigns", name), **(changes or {})}
     if scenario_changes:
         document["changes"] = {**document.get("changes", {}), **scenario_changes}
+        kept = {key: spread for key, spread in document.get("vary", {}).items() if key not in scenario_changes}
+        document["vary"] = kept
     config = validated(CampaignConfig, document, name)
     scenario = load_scenario(_beside(name, config.scenario), config.changes)
     _check_limits(config, name)
