@@ -2,8 +2,8 @@
 
 References
 ----------
-Saltelli et al., Computer Physics Communications 181 (2010) 259: first-order and total indices from the points A, B and A with one
-column of B (`sampling.saltelli_design`), as scipy computes them.
+Saltelli et al., Computer Physics Communications 181 (2010) 259: first-order and total indices from the points A,
+B and A with one column of B (`sampling.saltelli_design`), as scipy computes them.
 """
 
 from typing import Any, NamedTuple
