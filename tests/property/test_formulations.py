@@ -325,7 +325,7 @@ def gusted():
     for form in BOTH:
         plant = neutral_of(form)
         air = plant.environment
-        gusty = type(air)(air.gravity, air.atmosphere, air.wind, gusts, air.ground_effect, air.ground)
+        gusty = type(air)(air.gravity, air.atmosphere, air.wind, gusts, (), air.ground_effect, air.ground)
         windy = TetheredAirship(plant.ship, gusty, ())
         # Gusts of no strength, so that one compiled program flies both.
         calm = eqx.tree_at(lambda p: [g.amplitude for g in p.environment.gusts], windy, [jnp.zeros(3)] * 2)

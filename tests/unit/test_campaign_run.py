@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -20,9 +21,22 @@ from tethership.campaign.plan import make_plan
 from tethership.campaign.store import CampaignStore, open_results
 from tethership.campaign.work import fly_one
 from tethership.errors import ConfigError
+from tethership.scenario.load import packaged_text
 
 COMMAND = [sys.executable, "-m", "tethership"]
-CASES = ["--samples", "48"]
+
+
+def small_campaign():
+    """Write the packaged campaign `layers` with 48 cases and few flights kept; returns its path."""
+    text = packaged_text("campaigns", "layers")
+    for word, number in (("samples", 48), ("worst", 1), ("random", 1)):
+        text = re.sub(rf"^{word} = \d+", f"{word} = {number}", text, flags=re.MULTILINE)
+    path = Path(tempfile.mkdtemp()) / "layers.toml"
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+SMALL = small_campaign()
 
 
 def run(*arguments, **options):
@@ -36,12 +50,12 @@ def run(*arguments, **options):
 def whole(tmp_path_factory):
     """48 cases under three laws, six batches, not interrupted: the folder and what was said."""
     folder = tmp_path_factory.mktemp("whole") / "layers"
-    return folder, run("campaign", "layers", *CASES, "--out", folder)
+    return folder, run("campaign", SMALL, "--out", folder)
 
 
 @pytest.fixture(scope="module")
 def plan():
-    return make_plan("layers", {"samples": 48})
+    return make_plan(SMALL)
 
 
 def marks(folder):
@@ -70,13 +84,20 @@ def test_command_says_runs_failed_and_exceedance(whole):
     assert len((folder / "flights.csv").read_text(encoding="utf-8").splitlines()) == 145
 
 
+def test_report_in_a_browser(whole, browsed):
+    dom = browsed(whole[0] / "report.html")
+    assert "Probability of passing each limit" in dom
+    assert 'data-errors="0"' in dom
+    assert dom.count("<img") >= 5
+
+
 def test_histories_are_kept_of_the_worst_and_of_some(whole):
     folder, said = whole
     chosen = [kept for kept in said["kept"] if kept["why"] == "worst" and kept["law"] == "rewind"]
     worst = [ts.Flight.load(folder / kept["file"]).metrics["tension_max"] for kept in chosen]
     peaks = np.sort(open_results(folder)["tension_max"].values[0])
-    assert len(worst) == 3
-    assert min(worst) > 0.9 * peaks[-3]
+    assert len(worst) == 1
+    assert worst[0] > 0.9 * peaks[-1]
 
 
 def test_a_case_of_the_batch_is_the_single_flight(whole, plan):
@@ -84,7 +105,8 @@ def test_a_case_of_the_batch_is_the_single_flight(whole, plan):
     peaks = data["tension_max"].values[0]
     gentle = int(np.argsort(peaks)[len(peaks) // 4])
     alone = fly_one(plan.scenario, plan.names, plan.values[0, gentle], "tight")
-    assert alone.metrics["tension_mean"] == pytest.approx(float(data["tension_mean"].values[0, gentle]), rel=2e-3)
+    # steps of 0.05 s are off by some 0.3 % of the mean tension in the median flight (benchmarks/campaign.py)
+    assert alone.metrics["tension_mean"] == pytest.approx(float(data["tension_mean"].values[0, gentle]), rel=1e-2)
 
 
 def test_every_case_has_its_own_turbulence(whole):
@@ -94,7 +116,7 @@ def test_every_case_has_its_own_turbulence(whole):
 
 def test_killed_and_started_again_it_ends_bit_identical(whole, tmp_path):
     folder = tmp_path / "layers"
-    command = [*COMMAND, "campaign", "layers", *CASES, "--out", str(folder), "--workers", "1", "--json"]
+    command = [*COMMAND, "campaign", SMALL, "--out", str(folder), "--workers", "1", "--json"]
     started = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
     limit = time.monotonic() + 200
     while not marks(folder) and time.monotonic() < limit and started.poll() is None:
@@ -103,7 +125,7 @@ def test_killed_and_started_again_it_ends_bit_identical(whole, tmp_path):
     started.wait()
     before = {mark.name: mark.stat().st_mtime_ns for mark in marks(folder)}
     assert 0 < len(before) < 6
-    said = run("campaign", "layers", *CASES, "--out", folder)
+    said = run("campaign", SMALL, "--out", folder)
     assert said["flown"] == 24 * (6 - len(before))
     assert before.items() <= {mark.name: mark.stat().st_mtime_ns for mark in marks(folder)}.items()
     same(whole[0], folder)
@@ -122,22 +144,20 @@ def test_a_batch_without_its_mark_is_flown_again(whole, tmp_path, plan):
 
 def test_a_finished_campaign_flies_nothing(whole):
     folder, said = whole
-    again = run("campaign", "layers", *CASES, "--out", folder)
+    again = run("campaign", SMALL, "--out", folder)
     assert again["flown"] == 0
     assert again["exceedance"] == said["exceedance"]
 
 
 @pytest.mark.parametrize(
-    "other", [["--seed", "2"], ["--samples", "47"], ["--wind", "9"], ["--set", "stop.time_limit=90"]]
+    ("changes", "scenario_changes"),
+    [({"seed": 2}, {}), ({"samples": 47}, {}), ({}, {"wind.speed": 9.0}), ({}, {"stop.time_limit": 90.0})],
 )
-def test_another_campaign_in_the_folder_is_refused_and_nothing_touched(whole, other):
+def test_another_campaign_in_the_folder_is_refused_and_nothing_touched(whole, changes, scenario_changes):
     folder, _ = whole
     before = (folder / "campaign.json").read_bytes(), sorted(marks(folder))
-    done = subprocess.run(
-        [*COMMAND, "campaign", "layers", *CASES, *other, "--out", str(folder)], capture_output=True, text=True
-    )
-    assert done.returncode == 2
-    assert "--out" in done.stderr
+    with pytest.raises(ConfigError, match=r"another campaign.*--out"):
+        CampaignStore(folder, make_plan(SMALL, changes, scenario_changes))
     assert before == ((folder / "campaign.json").read_bytes(), sorted(marks(folder)))
 
 
@@ -177,7 +197,7 @@ def test_failed_flights_count_against_every_limit(whole, plan):
 
 def test_no_scheduler_is_said_in_one_line(tmp_path):
     done = subprocess.run(
-        [*COMMAND, "campaign", "layers", *CASES, "--scheduler", "tcp://127.0.0.1:9", "--out", str(tmp_path / "x")],
+        [*COMMAND, "campaign", SMALL, "--scheduler", "tcp://127.0.0.1:9", "--out", str(tmp_path / "x")],
         capture_output=True,
         text=True,
     )
@@ -185,35 +205,74 @@ def test_no_scheduler_is_said_in_one_line(tmp_path):
     assert "no scheduler answers at tcp://127.0.0.1:9" in done.stderr.splitlines()[-1]
 
 
-@pytest.fixture
-def cluster(tmp_path):
-    """A scheduler and two workers on loopback: the address and the workers' processes."""
-    pytest.importorskip("distributed")
-    file = tmp_path / "scheduler.json"
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": tmp_path}
-    dask = [sys.executable, "-m", "dask"]
+WITHOUT = """
+import sys
+
+class Hidden:
+    def find_spec(self, name, path=None, target=None):
+        if name.split(".")[0] == "tethership":
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+sys.meta_path.insert(0, Hidden())
+from dask.__main__ import main
+sys.argv = ["dask", *sys.argv[1:]]
+main()
+"""
+
+
+def start_scheduler(folder):
+    """Start a scheduler on loopback; returns its process and the options that name it."""
+    file = folder / "scheduler.json"
     common = ["--no-dashboard", "--scheduler-file", str(file)]
-    processes = [
-        subprocess.Popen(
-            [*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", *common], **quiet, start_new_session=True
-        )
-    ]
+    command = [sys.executable, "-m", "dask", "scheduler", "--host", "127.0.0.1", "--port", "0", *common]
+    process = subprocess.Popen(command, **quiet(folder))
     limit = time.monotonic() + 60
     while not file.exists() and time.monotonic() < limit:
         time.sleep(0.1)
-    worker = [*dask, "worker", "--nworkers", "1", "--nthreads", "1", "--no-nanny", *common]
-    processes += [subprocess.Popen(worker, **quiet, start_new_session=True) for _ in range(2)]
-    yield json.loads(file.read_text())["address"], processes[1:]
+    return process, common
+
+
+def quiet(folder):
+    return {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": folder, "start_new_session": True}
+
+
+def end(processes):
     for process in processes:
         if process.poll() is None:
             os.killpg(process.pid, signal.SIGKILL)
         process.wait()
 
 
+def test_a_worker_without_the_package_is_said_so(tmp_path):
+    pytest.importorskip("distributed")
+    scheduler, common = start_scheduler(tmp_path)
+    options = ["worker", "--nworkers", "1", "--nthreads", "1", "--no-nanny", *common]
+    worker = subprocess.Popen([sys.executable, "-c", WITHOUT, *options], **quiet(tmp_path))
+    try:
+        address = json.loads((tmp_path / "scheduler.json").read_text())["address"]
+        command = [*COMMAND, "campaign", SMALL, "--out", str(tmp_path / "x"), "--scheduler", address]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    finally:
+        end([worker, scheduler])
+    assert done.returncode == 2, done.stderr
+    assert "no tethership that can be imported" in done.stderr
+
+
+@pytest.fixture
+def cluster(tmp_path):
+    """A scheduler and two workers on loopback: the address and the workers' processes."""
+    pytest.importorskip("distributed")
+    scheduler, common = start_scheduler(tmp_path)
+    command = [sys.executable, "-m", "dask", "worker", "--nworkers", "1", "--nthreads", "1", "--no-nanny", *common]
+    workers = [subprocess.Popen(command, **quiet(tmp_path)) for _ in range(2)]
+    yield json.loads((tmp_path / "scheduler.json").read_text())["address"], workers
+    end([*workers, scheduler])
+
+
 def test_a_cluster_that_loses_a_worker_loses_nothing(whole, cluster, tmp_path):
     address, workers = cluster
     folder = tmp_path / "layers"
-    command = [*COMMAND, "campaign", "layers", *CASES, "--out", str(folder), "--scheduler", address, "--json"]
+    command = [*COMMAND, "campaign", SMALL, "--out", str(folder), "--scheduler", address, "--json"]
     started = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     limit = time.monotonic() + 200
     while not marks(folder) and time.monotonic() < limit and started.poll() is None:

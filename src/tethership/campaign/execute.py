@@ -153,21 +153,22 @@ def on_cluster(address: str) -> Iterator[Hands]:
 
 
 def _worker_version() -> str:
-    """Return the version of the package where this runs, `none` if there is none."""
-    try:
-        from tethership._version import __version__
-    except ImportError:
-        return "none"
-    return __version__
+    """Return the version of the package where this runs."""
+    return _version()
 
 
 def _check_workers(client: Any, address: str) -> None:
     """Raise ConfigError where a cluster cannot fly."""
-    client.wait_for_workers(1, timeout=CONNECT)
-    found = client.run(_worker_version)
-    other = {worker: version for worker, version in found.items() if version != _version()}
-    if other:
-        worker, version = next(iter(other.items()))
+    try:
+        client.wait_for_workers(1, timeout=CONNECT)
+    except TimeoutError as error:
         raise ConfigError(
-            f"worker {worker} of {address} has tethership {version}, here it is {_version()}; install the same on all"
-        )
+            f"the scheduler at {address} has no workers; start some with `dask worker {address}`"
+        ) from error
+    found = client.run(_worker_version, on_error="return")
+    for worker, version in found.items():
+        if version != _version():
+            what = f"tethership {version}" if isinstance(version, str) else "no tethership that can be imported"
+            raise ConfigError(
+                f"worker {worker} of {address} has {what}; here it is {_version()}: install the same on all workers"
+            )

@@ -29,5 +29,5 @@ class MeasuredHistory(AbstractFluctuation):
         return self.path.evaluate(jnp.clip(time, self.path.t0, self.path.t1))
 
     def rotation(self, time: Float[Array, ""], axis: Float[Array, "3"]) -> None:
-        """Return None: one point was measured."""
+        """Return None in place of a rate [rad/s]: one point was measured."""
         return

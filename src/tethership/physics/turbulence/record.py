@@ -28,7 +28,7 @@ class Turbulence(AbstractFluctuation):
     coefficients : Float[Array, "4099 3"]
         Of the cubic B-spline through the record [m/s], ground axes; the first three again at the end.
     direction : Float[Array, "3"]
-        Unit vector of the mean wind, ground axes.
+        Unit vector of the mean wind [-], ground axes.
     speed : Float[Array, ""]
         Mean wind U that carries it past [m/s].
     gradients : bool
