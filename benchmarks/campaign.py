@@ -20,9 +20,9 @@ import scipy.integrate
 import tethership as ts
 from tethership.campaign.answers import step_error
 from tethership.campaign.execute import fly_campaign, in_processes, in_this_process
+from tethership.campaign.flights import Flyer
 from tethership.campaign.plan import Plan, make_plan
 from tethership.campaign.store import CampaignStore, open_results
-from tethership.campaign.work import _flyer
 from tethership.scenario.laws import build_law
 from tethership.simulation.closed_loop import ClosedLoop
 from tethership.simulation.docking import start_state
@@ -44,7 +44,7 @@ def flown(plan: Plan, hands: object) -> tuple[float, Path]:
 
 def batch_times(plan: Plan) -> list[float]:
     """Return wall seconds of each whole batch, one after the other."""
-    flyer = _flyer(plan.work())
+    flyer = Flyer(plan.scenario, plan.names, plan.values[0, 0], plan.lanes, plan.config.step)
     spent = []
     for number in range(plan.batches):
         values = plan.batch(number).values

@@ -61,12 +61,12 @@ def variants(study: dict[str, Any]) -> str:
 def fit_words(fit: dict[str, Any]) -> str:
     """Return what the fit found, in words."""
     left = ", ".join(f"{value:.2f} ({name})" for name, value in fit["left_out_misfit"].items())
+    weighed = f"lacks {', '.join(fit['spectrum_unmet'])}" if fit["spectrum_unmet"] else "has all"
     bound = ", ".join(name.replace("_", " ") for name in fit["at_bound"]) or "none"
     return (
         f"The search looked at {fit['vectors']} vectors; the best has a misfit to the tables of "
         f"{fit['tables_misfit']:.2f} (0.83 is one tolerance off in every number). Of the four parts of L1 and L2 "
-        "that were "
-        f"weighed too it {'lacks ' + ', '.join(fit['spectrum_unmet']) if fit['spectrum_unmet'] else 'has all'}. "
+        f"that were weighed too it {weighed}. "
         f"Within 2 % of a bound: {bound}. Fits that never saw the flights of one logic miss them by {left}."
     )
 

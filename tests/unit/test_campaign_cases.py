@@ -130,6 +130,15 @@ def test_laws_fly_the_same_cases_with_their_own_gains(planned):
     assert np.all(plan.values[2, :, place["control.rewind.gain"]] == 0.01)
 
 
+def test_a_law_may_have_layers_that_the_scenario_leaves_out(planned):
+    changes = '[changes]\n"control.layers" = ["rewind"]\n'
+    laws = '[[laws]]\nname = "a"\nlayers = ["rewind", "heading"]\n'
+    assert planned(HEAD + changes + WIND + laws).scenario.layers == ("rewind", "heading", "navigation")
+    own = planned(HEAD + changes + WIND)
+    assert own.laws[0].layers == ("rewind",)
+    assert np.all(own.values[0, :, own.names.index("control.heading.gain")] == 0.0)
+
+
 def test_a_gain_that_varies_is_off_where_its_layer_is(planned):
     text = varied('distribution = "uniform"\nlow = 1.0\nhigh = 9.0\nunit = "1/rad"', "control.heading.gain")
     plan = planned(text + '[[laws]]\nname = "a"\nlayers = ["rewind"]\n[[laws]]\nname = "b"\nlayers = ["heading"]\n')

@@ -7,7 +7,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from pathlib import Path
 
@@ -26,17 +25,15 @@ from tethership.scenario.load import packaged_text
 COMMAND = [sys.executable, "-m", "tethership"]
 
 
-def small_campaign():
-    """Write the packaged campaign `layers` with 48 cases and few flights kept; returns its path."""
+@pytest.fixture(scope="module")
+def small(tmp_path_factory):
+    """Path of the packaged campaign `layers` with 48 cases and few flights kept."""
     text = packaged_text("campaigns", "layers")
     for word, number in (("samples", 48), ("worst", 1), ("random", 1)):
         text = re.sub(rf"^{word} = \d+", f"{word} = {number}", text, flags=re.MULTILINE)
-    path = Path(tempfile.mkdtemp()) / "layers.toml"
+    path = tmp_path_factory.mktemp("small") / "layers.toml"
     path.write_text(text, encoding="utf-8")
     return str(path)
-
-
-SMALL = small_campaign()
 
 
 def run(*arguments, **options):
@@ -47,15 +44,15 @@ def run(*arguments, **options):
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory):
+def whole(tmp_path_factory, small):
     """48 cases under three laws, six batches, not interrupted: the folder and what was said."""
     folder = tmp_path_factory.mktemp("whole") / "layers"
-    return folder, run("campaign", SMALL, "--out", folder)
+    return folder, run("campaign", small, "--out", folder)
 
 
 @pytest.fixture(scope="module")
-def plan():
-    return make_plan(SMALL)
+def plan(small):
+    return make_plan(small)
 
 
 def marks(folder):
@@ -114,9 +111,9 @@ def test_every_case_has_its_own_turbulence(whole):
     assert len(np.unique(theta)) == 144
 
 
-def test_killed_and_started_again_it_ends_bit_identical(whole, tmp_path):
+def test_killed_and_started_again_it_ends_bit_identical(whole, tmp_path, small):
     folder = tmp_path / "layers"
-    command = [*COMMAND, "campaign", SMALL, "--out", str(folder), "--workers", "1", "--json"]
+    command = [*COMMAND, "campaign", small, "--out", str(folder), "--workers", "1", "--json"]
     started = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
     limit = time.monotonic() + 200
     while not marks(folder) and time.monotonic() < limit and started.poll() is None:
@@ -125,10 +122,20 @@ def test_killed_and_started_again_it_ends_bit_identical(whole, tmp_path):
     started.wait()
     before = {mark.name: mark.stat().st_mtime_ns for mark in marks(folder)}
     assert 0 < len(before) < 6
-    said = run("campaign", SMALL, "--out", folder)
+    said = run("campaign", small, "--out", folder)
     assert said["flown"] == 24 * (6 - len(before))
     assert before.items() <= {mark.name: mark.stat().st_mtime_ns for mark in marks(folder)}.items()
     same(whole[0], folder)
+
+
+def test_killed_before_the_store_was_whole_it_begins_again(tmp_path, plan):
+    store = CampaignStore(tmp_path / "x", plan)
+    shutil.rmtree(store.folder / "finished")
+    shutil.rmtree(store.folder / "results.zarr" / "input")
+    again = CampaignStore(tmp_path / "x", plan)
+    assert again.unfinished() == [0, 1, 2, 3, 4, 5]
+    again.keep(plan.batch(0), {"tension_max": np.ones(24)})
+    assert np.array_equal(open_results(tmp_path / "x")["input"].values, plan.values)
 
 
 def test_a_batch_without_its_mark_is_flown_again(whole, tmp_path, plan):
@@ -142,9 +149,9 @@ def test_a_batch_without_its_mark_is_flown_again(whole, tmp_path, plan):
     same(whole[0], folder)
 
 
-def test_a_finished_campaign_flies_nothing(whole):
+def test_a_finished_campaign_flies_nothing(whole, small):
     folder, said = whole
-    again = run("campaign", SMALL, "--out", folder)
+    again = run("campaign", small, "--out", folder)
     assert again["flown"] == 0
     assert again["exceedance"] == said["exceedance"]
 
@@ -153,11 +160,11 @@ def test_a_finished_campaign_flies_nothing(whole):
     ("changes", "scenario_changes"),
     [({"seed": 2}, {}), ({"samples": 47}, {}), ({}, {"wind.speed": 9.0}), ({}, {"stop.time_limit": 90.0})],
 )
-def test_another_campaign_in_the_folder_is_refused_and_nothing_touched(whole, changes, scenario_changes):
+def test_another_campaign_in_the_folder_is_refused_and_nothing_touched(whole, changes, scenario_changes, small):
     folder, _ = whole
     before = (folder / "campaign.json").read_bytes(), sorted(marks(folder))
     with pytest.raises(ConfigError, match=r"another campaign.*--out"):
-        CampaignStore(folder, make_plan(SMALL, changes, scenario_changes))
+        CampaignStore(folder, make_plan(small, changes, scenario_changes))
     assert before == ((folder / "campaign.json").read_bytes(), sorted(marks(folder)))
 
 
@@ -195,9 +202,9 @@ def test_failed_flights_count_against_every_limit(whole, plan):
     assert answer(plan, data)["failed"] == 2
 
 
-def test_no_scheduler_is_said_in_one_line(tmp_path):
+def test_no_scheduler_is_said_in_one_line(tmp_path, small):
     done = subprocess.run(
-        [*COMMAND, "campaign", SMALL, "--scheduler", "tcp://127.0.0.1:9", "--out", str(tmp_path / "x")],
+        [*COMMAND, "campaign", small, "--scheduler", "tcp://127.0.0.1:9", "--out", str(tmp_path / "x")],
         capture_output=True,
         text=True,
     )
@@ -243,14 +250,14 @@ def end(processes):
         process.wait()
 
 
-def test_a_worker_without_the_package_is_said_so(tmp_path):
+def test_a_worker_without_the_package_is_said_so(tmp_path, small):
     pytest.importorskip("distributed")
     scheduler, common = start_scheduler(tmp_path)
     options = ["worker", "--nworkers", "1", "--nthreads", "1", "--no-nanny", *common]
     worker = subprocess.Popen([sys.executable, "-c", WITHOUT, *options], **quiet(tmp_path))
     try:
         address = json.loads((tmp_path / "scheduler.json").read_text())["address"]
-        command = [*COMMAND, "campaign", SMALL, "--out", str(tmp_path / "x"), "--scheduler", address]
+        command = [*COMMAND, "campaign", small, "--out", str(tmp_path / "x"), "--scheduler", address]
         done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     finally:
         end([worker, scheduler])
@@ -269,10 +276,10 @@ def cluster(tmp_path):
     end([*workers, scheduler])
 
 
-def test_a_cluster_that_loses_a_worker_loses_nothing(whole, cluster, tmp_path):
+def test_a_cluster_that_loses_a_worker_loses_nothing(whole, cluster, tmp_path, small):
     address, workers = cluster
     folder = tmp_path / "layers"
-    command = [*COMMAND, "campaign", SMALL, "--out", str(folder), "--scheduler", address, "--json"]
+    command = [*COMMAND, "campaign", small, "--out", str(folder), "--scheduler", address, "--json"]
     started = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     limit = time.monotonic() + 200
     while not marks(folder) and time.monotonic() < limit and started.poll() is None:

@@ -16,15 +16,12 @@ from tethership.campaign.paired import paired_limit, paired_metric
 from tethership.campaign.plan import Plan
 from tethership.campaign.probability import estimate
 from tethership.campaign.schema import Requirement
-from tethership.campaign.work import VERIFIED
+from tethership.campaign.work import COMPARED
 from tethership.simulation import Outcome
 from tethership.simulation.batch import CODES
 
 UNBALANCED = 1e-3
 """What a trim may leave [1e-3 of the weight]: beyond it the case has no equilibrium."""
-
-COMPARED = ("docking_time", "tension_max", "tension_mean", "ADC", "E", "theta_rms")
-"""Metrics of a pair of laws."""
 
 LEVELS = (1e-2, 1e-3, 1e-4)
 """Probabilities per flight whose peak tension is extrapolated."""
@@ -203,7 +200,7 @@ def _complied(plan: Plan, flags: dict[str, np.ndarray], requirement: Requirement
 def step_error(data: xr.Dataset) -> dict[str, Any]:
     """Return what the fixed steps cost: |fixed/tight − 1| of the flights flown again, median and largest by metric."""
     found: dict[str, Any] = {"flights": 0}
-    for name in VERIFIED:
+    for name in COMPARED:
         errors = data[f"error_{name}"].values if f"error_{name}" in data else np.array([])
         finite = errors[np.isfinite(errors)]
         found["flights"] = max(found["flights"], len(finite))

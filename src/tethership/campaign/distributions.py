@@ -4,6 +4,7 @@ Each is read in its own unit and returns the quantile of a probability in SI, so
 Sobol, Latin hypercube, correlated) goes through one function.
 """
 
+import abc
 import math
 from typing import Annotated, Literal
 
@@ -14,7 +15,7 @@ from pydantic import Field, model_validator
 from tethership.scenario.quantity import Table, converted
 
 
-class _Spread(Table):
+class _Spread(Table, abc.ABC):
     """What all have in common: `unit` of the numbers, or `relative`, numbers being multiples of the scenario's."""
 
     unit: str | None = None
@@ -28,9 +29,9 @@ class _Spread(Table):
             raise ValueError('it needs a unit ("1" for a plain number), or relative = true')
         return self
 
+    @abc.abstractmethod
     def quantile(self, probability: np.ndarray) -> np.ndarray:
         """Return values in the file's unit at probabilities between 0 and 1."""
-        raise NotImplementedError
 
     def levels(self) -> np.ndarray:
         """Return the values of a full-factorial grid in the file's unit."""

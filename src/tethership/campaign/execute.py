@@ -12,6 +12,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from typing import Any, NamedTuple, cast
 
+from tethership._version import __version__
 from tethership.campaign.plan import Batch, Plan
 from tethership.campaign.store import CampaignStore
 from tethership.campaign.work import fly_batch
@@ -52,9 +53,10 @@ def fly_campaign(plan: Plan, store: CampaignStore, hands: Hands, progress: Progr
         Results cannot be written.
     """
     work = plan.work()
-    waiting = iter(store.unfinished())
+    unfinished = store.unfinished()
+    waiting = iter(unfinished)
     total = len(plan.laws) * plan.cases
-    left = sum(len(plan.batch(number).values) for number in store.unfinished())
+    left = sum(len(plan.batch(number).values) for number in unfinished)
     done, flown = total - left, 0
     running: dict[Future, Batch] = {}
 
@@ -85,13 +87,7 @@ def _result(future: Future) -> Any:
     except BrokenProcessPool as error:
         raise SolveError("a worker process died; run the same command again to go on from the last batch") from error
     except ModuleNotFoundError as error:
-        raise ConfigError(f"a worker lacks {error.name}; install tethership {_version()} where it runs") from error
-
-
-def _version() -> str:
-    from tethership._version import __version__
-
-    return __version__
+        raise ConfigError(f"a worker lacks {error.name}; install tethership {__version__} where it runs") from error
 
 
 @contextmanager
@@ -105,8 +101,15 @@ def in_this_process() -> Iterator[Hands]:
 @contextmanager
 def in_processes(workers: int) -> Iterator[Hands]:
     """Fly on so many fresh processes of this machine."""
-    with _ended(ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"))) as pool:
+    with fresh_processes(workers) as pool:
         yield Hands(pool, workers)
+
+
+@contextmanager
+def fresh_processes(count: int) -> Iterator[Executor]:
+    """Give a pool of fresh processes (JAX does not survive a fork), ended at once where the caller fails."""
+    with _ended(ProcessPoolExecutor(count, multiprocessing.get_context("spawn"))) as pool:
+        yield pool
 
 
 @contextmanager
@@ -153,8 +156,8 @@ def on_cluster(address: str) -> Iterator[Hands]:
 
 
 def _worker_version() -> str:
-    """Return the version of the package where this runs."""
-    return _version()
+    """Return the version of the package where this runs: a cluster calls it by name."""
+    return __version__
 
 
 def _check_workers(client: Any, address: str) -> None:
@@ -167,8 +170,8 @@ def _check_workers(client: Any, address: str) -> None:
         ) from error
     found = client.run(_worker_version, on_error="return")
     for worker, version in found.items():
-        if version != _version():
+        if version != __version__:
             what = f"tethership {version}" if isinstance(version, str) else "no tethership that can be imported"
             raise ConfigError(
-                f"worker {worker} of {address} has {what}; here it is {_version()}: install the same on all workers"
+                f"worker {worker} of {address} has {what}; here it is {__version__}: install the same on all workers"
             )

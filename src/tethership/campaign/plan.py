@@ -17,6 +17,7 @@ from tethership.campaign.schema import CampaignConfig, LawConfig
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario, find_parameter, list_parameters, load_scenario
 from tethership.scenario.changes import Document
+from tethership.scenario.control_schema import LAYERS
 from tethership.scenario.load import read_document, validated
 
 
@@ -156,13 +157,13 @@ def make_plan(name: str, changes: dict[str, Any] | None = None, scenario_changes
     document = {**read_document("campaigns", name), **(changes or {})}
     if scenario_changes:
         document["changes"] = {**document.get("changes", {}), **scenario_changes}
-        kept = {key: spread for key, spread in document.get("vary", {}).items() if key not in scenario_changes}
-        document["vary"] = kept
+        document["vary"] = {k: v for k, v in document.get("vary", {}).items() if k not in scenario_changes}
     config = validated(CampaignConfig, document, name)
-    scenario = load_scenario(_beside(name, config.scenario), config.changes)
+    own = load_scenario(_beside(name, config.scenario), config.changes)
+    scenario = own.changed({"control.layers": list(LAYERS)})  # a layer is off by its gains: see `layer_switches`
     _check_limits(config, name)
     sample = draw(config, scenario, name)
-    laws = config.laws or (LawConfig(name="own", layers=scenario.layers),)
+    laws = config.laws or (LawConfig(name="own", layers=own.layers),)
     names, values = _columns(scenario, sample, laws)
     return Plan(name, document, config, scenario, sample, laws, names, values)
 

@@ -61,7 +61,7 @@ class LawConfig(Table):
         return check_layers(layers)
 
 
-class LimitsConfig(Table):
+class CampaignLimits(Table):
     """Limits besides the tensions that the scenario watches."""
 
     winch_pull: Annotated[float, Quantity("N", positive=True)] | None = None
@@ -110,7 +110,7 @@ class CampaignConfig(Table):
     vary: dict[str, Distribution]
     correlated: tuple[CorrelatedGroup, ...] = ()
     laws: tuple[LawConfig, ...] = ()
-    limits: LimitsConfig = LimitsConfig()
+    limits: CampaignLimits = CampaignLimits()
     requirements: tuple[Requirement, ...] = ()
 
     @model_validator(mode="after")

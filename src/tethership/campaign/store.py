@@ -1,11 +1,12 @@
 """A campaign's results on disk, as batches end: a Zarr group and a mark for each finished batch.
 
-Depends on: zarr, campaign.plan. A mark is made after a batch's numbers are written, so that whatever is marked is
-whole: killed at any moment, a campaign goes on with the batches that have none.
+Depends on: zarr, campaign.plan. The folder of marks is made when the store is whole, a mark when a batch's numbers are
+written: killed at any moment, a campaign goes on with what has none.
 """
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -40,7 +41,7 @@ class CampaignStore:
         self.folder, self._plan = folder, plan
         known = read_manifest(folder)
         if known is None:
-            self._begin()
+            self._claim()
         elif known.get("digest") != plan.digest():
             version = known.get("tethership")
             what = f"a campaign of tethership {version}" if version != __version__ else "another campaign"
@@ -48,23 +49,20 @@ class CampaignStore:
                 f"{folder} holds {what} ({known.get('name')}, {known.get('cases')} cases, seed {known.get('seed')}); "
                 "choose another --out, or delete the folder"
             )
+        with self._said():
+            self._lay_out()
         self._arrays: dict[str, Any] = {}
 
-    def _begin(self) -> None:
-        """Write what the campaign is; refuse a folder that holds something of another kind."""
+    def _claim(self) -> None:
+        """Write whose folder it is; refuse one that holds something of another kind."""
         if (self.folder / RESULTS).exists():
             raise ConfigError(f"{self.folder / RESULTS} has no {MANIFEST} beside it; choose another --out")
-        (self.folder / MARKS).mkdir(parents=True, exist_ok=True)
+        with self._said():
+            self._write_manifest()
+
+    def _write_manifest(self) -> None:
+        """Write what the campaign is, whole or not at all."""
         plan = self._plan
-        group = zarr.create_group(self.folder / RESULTS)
-        group.attrs.update({"laws": [law.name for law in plan.laws], "inputs": list(plan.names)})
-        shape = plan.values.shape
-        chunks = (1, plan.lanes, shape[2])
-        inputs = group.create_array(
-            "input", shape=shape, chunks=chunks, dtype="f8", dimension_names=("law", "case", "quantity")
-        )
-        inputs[...] = plan.values
-        group.create_array("replicate", data=plan.sample.replicate, dimension_names=("case",))
         manifest = {
             "digest": plan.digest(),
             "tethership": __version__,
@@ -75,9 +73,26 @@ class CampaignStore:
             "campaign": plan.document,
             "scenario": plan.scenario.document,
         }
+        self.folder.mkdir(parents=True, exist_ok=True)
         partial = self.folder / f"{MANIFEST}.partial"
         partial.write_text(json.dumps(manifest, indent=1, default=str), encoding="utf-8")
         partial.replace(self.folder / MANIFEST)
+
+    def _lay_out(self) -> None:
+        """Make the store, where it is not whole: a folder was claimed and its owner killed before it was."""
+        if (self.folder / MARKS).is_dir():
+            return
+        plan = self._plan
+        group = zarr.create_group(self.folder / RESULTS, overwrite=True)
+        group.attrs.update({"laws": [law.name for law in plan.laws], "inputs": list(plan.names)})
+        shape = plan.values.shape
+        chunks = (1, plan.lanes, shape[2])
+        inputs = group.create_array(
+            "input", shape=shape, chunks=chunks, dtype="f8", dimension_names=("law", "case", "quantity")
+        )
+        inputs[...] = plan.values
+        group.create_array("replicate", data=plan.sample.replicate, dimension_names=("case",))
+        (self.folder / MARKS).mkdir()
 
     def unfinished(self) -> list[int]:
         """Return the numbers of the batches that have not ended."""
@@ -93,10 +108,16 @@ class CampaignStore:
             They cannot be written (disk full): what was written before stays readable.
         """
         rows = slice(batch.first, batch.first + len(batch.values))
-        try:
+        with self._said():
             for name, values in found.items():
                 self._array(name, values)[batch.law, rows] = values
             (self.folder / MARKS / f"{batch.number:06d}").touch()
+
+    @contextmanager
+    def _said(self) -> Iterator[None]:
+        """Say in one line, with its cure, what the disk refuses."""
+        try:
+            yield
         except OSError as error:
             raise ConfigError(
                 f"cannot write to {self.folder}: {error.strerror or error}. What is finished is kept: make room and "

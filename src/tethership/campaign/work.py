@@ -10,11 +10,12 @@ from tethership.campaign.flights import Flyer
 from tethership.campaign.plan import Batch, Work
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario, scenario_at
+from tethership.scenario.control_schema import LAYERS
 from tethership.scenario.load import from_document
 from tethership.simulation import Flight, dock
 
-VERIFIED = ("docking_time", "tension_max", "tension_mean", "ADC", "E", "theta_rms")
-"""Metrics in which fixed steps are held against a tight adaptive flight."""
+COMPARED = ("docking_time", "tension_max", "tension_mean", "ADC", "E", "theta_rms")
+"""Metrics in which two laws are compared, and fixed steps are held against a tight adaptive flight."""
 
 
 @functools.lru_cache(maxsize=2)
@@ -33,15 +34,15 @@ def fly_batch(work: Work, batch: Batch) -> dict[str, np.ndarray]:
     Returns
     -------
     dict[str, ndarray]
-        As `fly_cases`, and `error_NAME` for each of `VERIFIED`: |fixed/tight − 1|, NaN where it was not flown again.
+        As `fly_cases`, and `error_NAME` for each of `COMPARED`: |fixed/tight − 1|, NaN where it was not flown again.
     """
     found = _flyer(work).fly(batch.values)
-    errors = {name: np.full(len(batch.values), np.nan) for name in VERIFIED}
+    errors = {name: np.full(len(batch.values), np.nan) for name in COMPARED}
     for place in batch.verified:
         exact = _tight(work, batch.values[place])
         if exact is None:
             continue
-        for name in VERIFIED:
+        for name in COMPARED:
             tight = exact.docking_time if name == "docking_time" else exact.metrics[name]
             errors[name][place] = _apart(found[name][place], tight)
     return {**found, **{f"error_{name}": error for name, error in errors.items()}}
@@ -83,4 +84,4 @@ def fly_one(scenario: Scenario, names: tuple[str, ...], values: np.ndarray, solv
     point = trim(here)
     if point.outcome is TrimOutcome.no_equilibrium:
         raise ConfigError(f"{scenario.name}: no equilibrium for this case")
-    return dock(here, point, ("rewind", "heading", "navigation"), solver=solver)
+    return dock(here, point, LAYERS, solver=solver)

@@ -1,22 +1,22 @@
 """Parts of a study as jobs in two processes, each kept as a file and done again only when something changed.
 
-Depends on: errors. A job is a function of a folder and settings that returns plain data; what it needs of others it
-reads from their files. Its key is a digest of the package's own files, the settings and its name: with the same key
-the stored result stands.
+Depends on: campaign (its pool of processes). A job is a function of a folder and settings that returns plain data; what
+it needs of others it reads from their files. Its key is a digest of the package's own files, the settings and its name:
+with the same key the stored result stands.
 """
 
 import hashlib
 import json
-import multiprocessing
 import os
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from contextlib import contextmanager
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from importlib import resources
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+
+from tethership.campaign.execute import fresh_processes
 
 WORKERS = 2
 """Processes at most."""
@@ -159,7 +159,7 @@ def _results(jobs: Mapping[str, Job], folder: Path, settings: Settings) -> Itera
     """Yield results as they come; a job starts when all it needs has been taken by the caller."""
     waiting, done = dict(jobs), set[str]()
     running: dict[Future, str] = {}
-    with _pool() as pool:
+    with fresh_processes(min(WORKERS, os.cpu_count() or 1)) as pool:
         while waiting or running:
             for name, job in list(waiting.items()):
                 first = (*job.needs, *job.after)
@@ -171,21 +171,6 @@ def _results(jobs: Mapping[str, Job], folder: Path, settings: Settings) -> Itera
                 name = running.pop(future)
                 yield name, future.result()
                 done.add(name)
-
-
-@contextmanager
-def _pool() -> Iterator[ProcessPoolExecutor]:
-    """Return a pool of fresh processes (JAX does not survive a fork), ended at once where the caller fails."""
-    pool = ProcessPoolExecutor(min(WORKERS, os.cpu_count() or 1), multiprocessing.get_context("spawn"))
-    try:
-        yield pool
-    except BaseException:
-        for process in list((getattr(pool, "_processes", None) or {}).values()):
-            process.terminate()
-        pool.shutdown(wait=False, cancel_futures=True)
-        raise
-    else:
-        pool.shutdown()
 
 
 def plain(value: Any) -> Any:

@@ -7,6 +7,9 @@ from typing import Any
 
 from tethership.simulation.quasi_static import MEMORY, TRUSTED
 
+WELL = 0.1
+"""Largest median difference of a cable that may be trusted [-]."""
+
 
 def line_words(cases: dict[str, Any]) -> list[str]:
     """Return what the comparison says; cases by name, each as `line_comparison.compare_line` gives it."""
@@ -35,16 +38,11 @@ def line_words(cases: dict[str, Any]) -> list[str]:
         if trusted and untrusted:
             words.append(
                 f"Where κ = |dT/dt|/(T ω₁) stayed below {TRUSTED:g} for {MEMORY:g} s, ω₁ being the cable's first "
-                "transverse "
-                f"mode, the tension of the {name} differs by {100 * min(trusted):.0f} to {100 * max(trusted):.0f} % "
-                "(median of "
-                f"each flight), {max(case['worst_trusted'] for case in of[law]):.0f} N at most; elsewhere by "
+                f"transverse mode, the tension of the {name} differs by {100 * min(trusted):.0f} to "
+                f"{100 * max(trusted):.0f} % (median of each flight), "
+                f"{max(case['worst_trusted'] for case in of[law]):.0f} N at most; elsewhere by "
                 f"{100 * min(untrusted):.0f} to {100 * max(untrusted):.0f} %."
             )
-    if words[1:]:
-        words.append(
-            "So the quasi-static elastic catenary may be trusted inside that range, and a flight that leaves it says "
-            "so; of "
-            "the paper's joint no range makes a cable."
-        )
+            if max(trusted) < WELL:
+                words.append(f"So the {name} may be trusted inside that range, and a flight that leaves it says so.")
     return words

@@ -185,8 +185,8 @@ def _verdict(judged: dict[str, Any], formulation: str, heading_gain: float) -> s
         return said + "They keep every constraint in every perturbed flight."
     return said + (
         f"No gains were found that keep every constraint in every perturbed flight: {', '.join(broken)}. A "
-        f"throttle is saturated for {judged['saturated_seconds']:.2f} s on average, in the first turn: 10° of "
-        f"misalignment ask for {heading_gain * np.sin(np.radians(10.0)):.1f} times full thrust of the side thrusters."
+        f"throttle is saturated for {judged['saturated_seconds']:.2f} s on average; 10° of misalignment "
+        f"alone ask for {heading_gain * np.sin(np.radians(10.0)):.1f} times full thrust of the side thrusters."
     )
 
 

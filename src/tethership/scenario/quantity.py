@@ -7,7 +7,7 @@ import dataclasses
 import functools
 import math
 from collections.abc import Iterable
-from typing import Any, Self
+from typing import Annotated, Any, Self
 
 import jax
 import numpy as np
@@ -162,3 +162,8 @@ class Quantity:
 
 Vector = tuple[float, float, float]
 Matrix = tuple[Vector, Vector, Vector]
+
+Angle = Annotated[float, Quantity("rad")]
+Speed = Annotated[float, Quantity("m/s", low=0.0)]
+Metres = Annotated[float, Quantity("m", positive=True)]
+Seconds = Annotated[float, Quantity("s", positive=True)]

@@ -5,14 +5,10 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from tethership.scenario.control_schema import ControlConfig
-from tethership.scenario.quantity import Quantity, Table, Vector
+from tethership.scenario.quantity import Angle, Metres, Quantity, Seconds, Speed, Table, Vector
 from tethership.scenario.vehicle_schema import VehicleConfig
 from tethership.scenario.wind_schema import GustConfig, TurbulenceConfig, WindConfig
 
-Angle = Annotated[float, Quantity("rad")]
-Speed = Annotated[float, Quantity("m/s", low=0.0)]
-Metres = Annotated[float, Quantity("m", positive=True)]
-Seconds = Annotated[float, Quantity("s", positive=True)]
 Point = Annotated[Vector, Quantity("m", depth=1)]
 Newtons = Annotated[float, Quantity("N", positive=True)]
 

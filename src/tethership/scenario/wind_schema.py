@@ -5,12 +5,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from tethership.scenario.quantity import Quantity, Table, Vector
-
-Angle = Annotated[float, Quantity("rad")]
-Speed = Annotated[float, Quantity("m/s", low=0.0)]
-Metres = Annotated[float, Quantity("m", positive=True)]
-Seconds = Annotated[float, Quantity("s", positive=True)]
+from tethership.scenario.quantity import Angle, Metres, Quantity, Seconds, Speed, Table, Vector
 
 
 class UniformWindConfig(Table):

@@ -1,7 +1,6 @@
 """A campaign's report and tables: what its flights say, for people. Depends on: view, campaign (its data)."""
 
-import csv
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,17 +12,9 @@ from tethership.campaign.answers import exceeded
 from tethership.campaign.plan import Plan
 from tethership.campaign.probability import running
 from tethership.view import campaign_figures as figures
+from tethership.view.campaign_csv import write_exceedance, write_flights
 from tethership.view.report import Figure, Section, Table, write_report
-
-METRICS = {
-    "docking_time": "time to dock [s]",
-    "tension_max": "largest tension [N]",
-    "tension_mean": "mean tension [N]",
-    "ADC": "ADC [1/s]",
-    "E": "E [-]",
-    "theta_rms": "θ_RMS [deg]",
-}
-"""Metrics in words."""
+from tethership.view.study_tables import NAMES
 
 
 def write_campaign(
@@ -55,7 +46,7 @@ def write_campaign(
         _importance(folder, answers),
         _checks(answers),
     ]
-    written = [_exceedance_csv(folder, answers), _flights_csv(folder, plan, data, flags)]
+    written = [write_exceedance(folder, answers), write_flights(folder, plan, data, flags)]
     path = write_report(
         folder / "report.html",
         plan.config.title,
@@ -144,8 +135,7 @@ def _exceedance(
         "Limits",
         [
             "Tensions are those at the tether point. Ground contact is a least clearance of the hull below zero: with "
-            "the anchor "
-            "at ground level, as in the paper, almost every docking has it."
+            "the anchor at ground level, as in the paper, almost every docking has it."
         ],
         shown,
         drawn,
@@ -185,7 +175,7 @@ def _pairs(answers: dict[str, Any]) -> Section | None:
     for pair in answers["pairs"]:
         cells = [
             [
-                METRICS[m["name"]],
+                NAMES[m["name"]],
                 m["first"],
                 m["second"],
                 m["difference"],
@@ -259,7 +249,7 @@ def _checks(answers: dict[str, Any]) -> Section:
     """Return what the fixed steps cost, and the flights that were kept."""
     error = answers["step_error"]
     cells = [
-        [METRICS[name], 100.0 * entry["median"], 100.0 * entry["largest"]]
+        [NAMES[name], 100.0 * entry["median"], 100.0 * entry["largest"]]
         for name, entry in error.items()
         if isinstance(entry, dict)
     ]
@@ -278,42 +268,3 @@ def _figure(folder: Path, name: str, drawing: Drawing, caption: str) -> Figure:
     path = folder / "figures" / f"{name}.png"
     drawing.savefig(path, dpi=140)
     return Figure(caption, path, None, caption)
-
-
-def _exceedance_csv(folder: Path, answers: dict[str, Any]) -> Path:
-    """Write the probabilities; returns where."""
-    path = folder / "exceedance.csv"
-    keys = ("exceeding", "flights", "probability", "low", "high", "confidence", "method")
-    rows = [
-        [law, limit, *(row[key] for key in keys)]
-        for law, of in answers["laws"].items()
-        for limit, row in of["exceedance"].items()
-    ]
-    return _csv(path, ["law", "limit", *keys], rows)
-
-
-def _flights_csv(folder: Path, plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray]) -> Path:
-    """Write every flight, a row each: what was drawn, how it ended, its metrics, limits passed; returns where."""
-    from tethership.simulation.batch import CODES
-
-    names = [name for name in METRICS if name in data]
-    head = ["law", "case", *plan.sample.names, "outcome", *names, *flags]
-    columns: Callable[[int, int], list[Any]] = lambda law, case: [  # noqa: E731
-        plan.laws[law].name,
-        case,
-        *plan.sample.values[case],
-        CODES[int(data["outcome"].values[law, case])].name,
-        *(data[name].values[law, case] for name in names),
-        *(int(of[law, case]) for of in flags.values()),
-    ]
-    rows = (columns(law, case) for law in range(len(plan.laws)) for case in range(plan.cases))
-    return _csv(folder / "flights.csv", head, rows)
-
-
-def _csv(path: Path, head: list[str], rows: Any) -> Path:
-    """Write a table as CSV; returns where."""
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(head)
-        writer.writerows(rows)
-    return path

@@ -114,8 +114,7 @@ def _tables(study: _Study) -> Section | None:
         "The docking starts at rest from the trim with 10° added to roll, pitch and yaw about the tether point, in a "
         "uniform wind from the north with a gust from the west at 20 s, and ends at 1.5 m of cable. A number "
         "**agrees** within 20 % (docking times within 2 %), is **near** within a factor 1.5 (4 %), else **differs**; "
-        "times over "
-        "a threshold that are both below 0.1 s agree."
+        "times over a threshold that are both below 0.1 s agree."
     ]
     return Section("Tables 3–6", words, drawn)
 
@@ -130,11 +129,9 @@ def _identification(study: _Study) -> Section:
         "have a wide tolerance, and every tolerance is widened by how far its number moves when the initial attitude "
         "moves by 1 %.",
         f"The best vector has a misfit of **{fit['tables_misfit']:.3f}** to the tables, {fit['misfit']:.3f} with the "
-        "four "
-        "parts of the spectrum counted in. It is one of a set: what fits within 10 % of it spreads as [[marginals]] "
-        "shows, "
-        "and only combinations of numbers are well determined ([[correlation]]). The best vector may lie outside the "
-        "set's 5–95 %: a set in eleven dimensions has far corners.",
+        "four parts of the spectrum counted in. It is one of a set: what fits within 10 % of it spreads as "
+        "[[marginals]] shows, and only combinations of numbers are well determined ([[correlation]]). The best "
+        "vector may lie outside the set's 5–95 %: a set in eleven dimensions has far corners.",
         (
             "Identified numbers within 2 % of a bound of their range: "
             + ", ".join(n.replace("_", " ") for n in fit["at_bound"])
@@ -152,9 +149,8 @@ def _identification(study: _Study) -> Section:
     ]
     words.append(
         "**How blind the rows at 9 m/s are.** The numbers of Tables 3–6 there are in no file that the fit or this "
-        "program "
-        "reads. The first fit was frozen before any flight at 9 m/s was computed; it was then searched again, because "
-        "its spectrum had been read in the wrong axes, by the same rows at 6 and 12 m/s and nothing else."
+        "program reads. The first fit was frozen before any flight at 9 m/s was computed; it was then searched again, "
+        "because its spectrum had been read in the wrong axes, by the same rows at 6 and 12 m/s and nothing else."
     )
     shown = [tables.parameter_table(fit)]
     if (left := tables.left_out_table(fit)) is not None:
@@ -169,8 +165,7 @@ def _identification(study: _Study) -> Section:
         *study.figure(
             "fit_residuals",
             "Computed over published, every fitted number, as the fit sees it: fixed steps, a cable that does not "
-            "break, half a "
-            "second added to times over a threshold.",
+            "break, half a second added to times over a threshold.",
         ),
     ]
     if not figures:
@@ -259,7 +254,7 @@ def _uncertainty(study: _Study) -> Section | None:
     words = [
         f"Each row was flown {study.settings.flights} times with the initial attitude moved by up to 2°, the "
         "gust by up to 1 s, the wind by up to 3 %, and the ship drawn from the identified set.",
-        f"Of {len(rows)} published numbers **{inside}** lie inside the 5–95 % range.",
+        f"Of {len(rows)} published numbers **{inside}** lie inside the 5–95 % range, to the rounding of the print.",
     ]
     return Section(
         "Uncertainty", words, [tables.uncertainty_table(part["perturbed"], wind) for wind in (6.0, 9.0, 12.0)]

@@ -114,8 +114,7 @@ def variant_table(part: Mapping[str, Any]) -> Table:
     note = (
         "Misfit to the tables: 0 is agreement, 0.83 is one tolerance off in every number (20 %, times over a threshold "
         "65 %). Fitted anew is a short search from the identified set, for tables and spectrum together, stored, and "
-        "flown "
-        "again in this run; the first row shows what it does by itself."
+        "flown again in this run; the first row shows what it does by itself."
     )
     return Table("Readings that the print leaves open.", heads, cells, note, label="variants")
 

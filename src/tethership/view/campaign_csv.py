@@ -1,0 +1,50 @@
+"""A campaign's tables as CSV: probabilities, and every flight. Depends on: campaign (its data)."""
+
+import csv
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from tethership.campaign.plan import Plan
+from tethership.campaign.work import COMPARED
+from tethership.simulation.batch import CODES
+
+
+def write_exceedance(folder: Path, answers: dict[str, Any]) -> Path:
+    """Write the probability of passing each limit under each law; returns where."""
+    keys = ("exceeding", "flights", "probability", "low", "high", "confidence", "method")
+    rows = (
+        [law, limit, *(row[key] for key in keys)]
+        for law, of in answers["laws"].items()
+        for limit, row in of["exceedance"].items()
+    )
+    return _written(folder / "exceedance.csv", ["law", "limit", *keys], rows)
+
+
+def write_flights(folder: Path, plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray]) -> Path:
+    """Write every flight, a row each: what was drawn [SI], how it ended, its metrics, limits passed; returns where."""
+    head = ["law", "case", *plan.sample.names, "outcome", *COMPARED, *flags]
+    return _written(folder / "flights.csv", head, _flights(plan, data, flags))
+
+
+def _flights(plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray]) -> Iterator[list[Any]]:
+    """Yield a row for each flight."""
+    outcome = data["outcome"].values
+    metrics = [data[name].values for name in COMPARED]
+    for law, case in np.ndindex(outcome.shape):
+        ended = CODES[int(outcome[law, case])].name
+        numbers = (metric[law, case] for metric in metrics)
+        passed = (int(of[law, case]) for of in flags.values())
+        yield [plan.laws[law].name, case, *plan.sample.values[case], ended, *numbers, *passed]
+
+
+def _written(path: Path, head: list[str], rows: Iterable[list[Any]]) -> Path:
+    """Write a table as CSV; returns where."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(head)
+        writer.writerows(rows)
+    return path
