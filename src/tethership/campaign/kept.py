@@ -36,10 +36,8 @@ def keep_flights(plan: Plan, data: xr.Dataset, folder: Path) -> list[dict[str, A
             name = f"{plan.laws[law].name}_{case}.nc"
             entry = {"law": plan.laws[law].name, "case": case, "why": why, "file": str(Path(FOLDER) / name)}
             if not (folder / FOLDER / name).exists():
-                partial = folder / FOLDER / f"{name}.partial"  # a file half written never stands
                 try:
-                    fly_one(plan.scenario, plan.names, plan.values[law, case]).save(partial)
-                    partial.replace(folder / FOLDER / name)
+                    fly_one(plan.scenario, plan.names, plan.values[law, case]).save(folder / FOLDER / name)
                 except ConfigError as error:
                     entry |= {"file": None, "error": str(error)}
             found.append(entry)

@@ -63,6 +63,10 @@ def attributes_of(dataset: xr.Dataset) -> dict[str, Any]:
 def write(dataset: xr.Dataset, path: Path) -> None:
     """Write a dataset to netCDF; the file appears whole or not at all.
 
+    Notes
+    -----
+    HDF5 writes into memory: where it meets a full disk itself it ends the process.
+
     Raises
     ------
     ConfigError
@@ -72,9 +76,10 @@ def write(dataset: xr.Dataset, path: Path) -> None:
     handle = None
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        content = dataset.to_netcdf(engine="h5netcdf", encoding=packed)
         handle = tempfile.NamedTemporaryFile(dir=path.parent, suffix=".part", delete=False)  # noqa: SIM115
-        handle.close()
-        dataset.to_netcdf(handle.name, engine="h5netcdf", encoding=packed)
+        with handle:
+            handle.write(content)
         os.chmod(handle.name, 0o644)
         os.replace(handle.name, path)
     except OSError as error:

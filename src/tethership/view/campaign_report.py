@@ -11,6 +11,7 @@ from matplotlib.figure import Figure as Drawing
 from tethership.campaign.answers import exceeded
 from tethership.campaign.plan import Plan
 from tethership.campaign.probability import running
+from tethership.errors import ConfigError
 from tethership.view import campaign_figures as figures
 from tethership.view.campaign_csv import write_exceedance, write_flights
 from tethership.view.report import Figure, Section, Table, write_report
@@ -34,7 +35,25 @@ def write_campaign(
         From `campaign.answers.answer`, with `kept` flights.
     footer : mapping
         Versions and provenance.
+
+    Raises
+    ------
+    ConfigError
+        They cannot be written.
     """
+    try:
+        return _written(folder, plan, data, answers, footer)
+    except OSError as error:
+        raise ConfigError(
+            f"cannot write the report into {folder}: {error.strerror or error}. Every flight is kept: make room and run "
+            "the same command again"
+        ) from error
+
+
+def _written(
+    folder: Path, plan: Plan, data: xr.Dataset, answers: dict[str, Any], footer: Mapping[str, Any]
+) -> list[Path]:
+    """Return `write_campaign`'s files."""
     (folder / "figures").mkdir(exist_ok=True)
     flags = exceeded(plan, data)
     sections = [
