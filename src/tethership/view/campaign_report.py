@@ -45,8 +45,8 @@ def write_campaign(
         return _written(folder, plan, data, answers, footer)
     except OSError as error:
         raise ConfigError(
-            f"cannot write the report into {folder}: {error.strerror or error}. Every flight is kept: make room and run "
-            "the same command again"
+            f"cannot write the report into {folder}: {error.strerror or error}. Every flight is kept: make room and "
+            "run the same command again"
         ) from error
 
 
