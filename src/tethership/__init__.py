@@ -56,7 +56,15 @@ if TYPE_CHECKING:
     from tethership.reproduction import check_claims, linear_figure
     from tethership.scenario import Scenario, list_packaged, list_parameters, load_scenario, scenario_at
     from tethership.simulation import Flight, Outcome, dock, fly_again
-    from tethership.view import interactive_root_locus, plot_docking, plot_linear_figure, plot_root_locus
+    from tethership.view import (
+        interactive_root_locus,
+        plot_campaign,
+        plot_docking,
+        plot_linear_figure,
+        plot_loads,
+        plot_modes,
+        plot_root_locus,
+    )
 
 _HOMES = {
     "AbstractLaw": "control",
@@ -82,8 +90,11 @@ _HOMES = {
     "list_parameters": "scenario",
     "load_scenario": "scenario",
     "open_results": "campaign",
+    "plot_campaign": "view",
     "plot_docking": "view",
     "plot_linear_figure": "view",
+    "plot_loads": "view",
+    "plot_modes": "view",
     "plot_root_locus": "view",
     "run_campaign": "campaign",
     "scenario_at": "scenario",
@@ -134,8 +145,11 @@ __all__ = [
     "list_parameters",
     "load_scenario",
     "open_results",
+    "plot_campaign",
     "plot_docking",
     "plot_linear_figure",
+    "plot_loads",
+    "plot_modes",
     "plot_root_locus",
     "run_campaign",
     "scenario_at",

@@ -289,3 +289,21 @@ def test_a_cluster_that_loses_a_worker_loses_nothing(whole, cluster, tmp_path, s
     assert started.returncode == 0, errors
     assert json.loads(output)["runs"] == 144
     same(whole[0], folder)
+
+
+def test_plots_show_the_answers(whole, small):
+    folder, told = whole
+    found = ts.run_campaign(small, folder)
+    assert found.flown == 0
+    axes = ts.plot_campaign(found)
+    drawn = [container.lines[0].get_xdata() for container in axes.containers]
+    for points, law in zip(drawn, told["laws"].values(), strict=True):
+        np.testing.assert_allclose(points, [row["probability"] for row in law["exceedance"].values()])
+    peaks = ts.plot_campaign(found, kind="peaks").lines[0].get_xdata()
+    np.testing.assert_array_equal(peaks, np.sort(found.data["tension_max"].values[0]))
+    assert len(ts.plot_campaign(found, kind="convergence", law="heading").lines) >= 2
+    assert len(ts.plot_campaign(found, kind="importance").patches) == len(found.plan.config.vary)
+    assert ts.plot_campaign(found, kind="times").get_xlabel() == "time to dock [s]"
+    for given, message in (({"kind": "peak"}, "did you mean 'peaks'"), ({"kind": "convergence", "law": "x"}, "no law")):
+        with pytest.raises(ConfigError, match=message):
+            ts.plot_campaign(found, **given)

@@ -13,18 +13,13 @@ from numpy.typing import NDArray
 from tethership.reproduction.terms import load_breakdown
 from tethership.simulation import Flight
 from tethership.view import style
+from tethership.view.loads import DECADES, KINDS, load_vectors
 from tethership.view.snapshots import Snapshots, take_snapshots
 
 Array = NDArray[np.float64]
 
 WORDS = {"net_weight": "weight and buoyancy together", "apparent_mass": "apparent mass, besides −Mᵃ ẇ"}
 """Names of loads that say more than their labels."""
-
-COLUMNS = {"force": "force [N]", "moment": "moment about P [N m]"}
-"""What is drawn beside each other, and its unit."""
-
-DECADES = 4.0
-"""Most decades of an axis below its largest value [-]."""
 
 LEFT, TOP, BOTTOM, PANEL = 0.075, 1.3, 0.5, 1.35
 """Left margin over the figure's width [-]; upper and lower margin and height of a panel with its gap [inch]."""
@@ -64,7 +59,7 @@ def plot_breakdown(flight: Flight, figure: Figure | None = None) -> Figure:
     height = figure.get_figheight()
     low, high = BOTTOM / height, 1.0 - TOP / height
     grid = figure.add_gridspec(count, 2, left=LEFT, right=0.985, bottom=low, top=high, hspace=0.32, wspace=0.13)
-    for column, (kind, title) in enumerate(COLUMNS.items()):
+    for column, (kind, title) in enumerate(KINDS.items()):
         loads = load_sizes(flight, kind)
         for row, name in enumerate(loads):
             axes = figure.add_subplot(grid[row, column])
@@ -91,10 +86,7 @@ def load_sizes(flight: Flight, kind: str) -> dict[str, Array]:
     kind : str
         `force` [N] or `moment` [N m].
     """
-    stored = flight.data[f"load_{kind}"]
-    loads = {str(name): stored.sel(load=name).to_numpy() for name in stored["load"].to_numpy()}
-    net = {"net_weight": loads.pop("gravity") + loads.pop("buoyancy")}
-    return {name: np.linalg.norm(load, axis=1) for name, load in {**net, **loads}.items()}
+    return {name: np.linalg.norm(load, axis=1) for name, load in load_vectors(flight, kind).items()}
 
 
 def _limits(loads: dict[str, Array]) -> tuple[float, float]:

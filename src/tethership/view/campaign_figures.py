@@ -1,10 +1,14 @@
-"""Pictures of a campaign: peaks, times, convergence, tail, importance. Depends on: matplotlib, campaign (its data)."""
+"""Pictures of a campaign: limits, peaks, times, convergence, tail, importance. Depends on: matplotlib, campaign's data.
+
+Each takes the axes to draw into, makes new ones if none are given, and returns them.
+"""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import scipy.stats
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tethership.view import style
@@ -12,8 +16,49 @@ from tethership.view import style
 COLOURS = style.CABLES
 """One colour a law."""
 
+WIDTH = 7.6
+"""Width of a new figure [inch]."""
 
-def plot_peaks(peaks: Mapping[str, np.ndarray], limits: Mapping[str, float]) -> Figure:
+
+def new_axes(axes: Axes | None, height: float) -> Axes:
+    """Return the axes that are given, or new ones of a height [inch]."""
+    return Figure(figsize=(WIDTH, height), layout="constrained").subplots() if axes is None else axes
+
+
+def plot_limits(found: Mapping[str, Mapping[str, Mapping[str, Any]]], confidence: float, axes: Axes | None) -> Axes:
+    """Draw the probability of passing each limit with its interval.
+
+    Parameters
+    ----------
+    found : mapping
+        Law → limit → `probability`, `low`, `high`, as in `answers["laws"][law]["exceedance"]`.
+    confidence : float
+        Of the intervals.
+    axes : Axes or None
+        Where to draw.
+    """
+    limits = list(next(iter(found.values())))
+    axes = new_axes(axes, 0.32 * len(limits) * max(1.0, 0.6 * len(found)) + 1.2)
+    step = 0.6 / len(found)
+    for i, (law, rows) in enumerate(found.items()):
+        place = np.arange(len(limits)) + step * (i - 0.5 * (len(found) - 1))
+        middle = np.array([rows[limit]["probability"] for limit in limits], float)
+        low, high = (
+            np.array([rows[limit][end] for limit in limits], dtype=float) for end in ("low", "high")
+        )  # None, where there is no interval, becomes NaN and is not drawn
+        reach = np.stack([middle - low, high - middle]).clip(0.0)
+        axes.errorbar(middle, place, xerr=reach, fmt="o", markersize=4, capsize=2.5, color=COLOURS[i % len(COLOURS)])
+        axes.plot([], [], "o", color=COLOURS[i % len(COLOURS)], markersize=4, label=law)
+    axes.set_yticks(np.arange(len(limits)), [limit.replace("_", " ") for limit in limits], fontsize=style.FONT)
+    axes.invert_yaxis()
+    axes.set_xlim(-0.02, 1.02)
+    axes.set_xlabel(f"probability of passing the limit, {100 * confidence:g} % interval [-]")
+    axes.grid(alpha=0.25, axis="x")
+    axes.legend(frameon=False, fontsize=style.FONT, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    return axes
+
+
+def plot_peaks(peaks: Mapping[str, np.ndarray], limits: Mapping[str, float], axes: Axes | None = None) -> Axes:
     """Draw which share of flights has a peak tension above a level.
 
     Parameters
@@ -22,14 +67,15 @@ def plot_peaks(peaks: Mapping[str, np.ndarray], limits: Mapping[str, float]) -> 
         Law → peak of each flight [N].
     limits : mapping
         Name → tension [N].
+    axes : Axes, optional
+        Where to draw.
     """
-    drawn = Figure(figsize=(7.6, 4.4), layout="constrained")
-    axes = drawn.subplots()
+    axes = new_axes(axes, 4.4)
     for i, (law, values) in enumerate(peaks.items()):
         ordered = np.sort(values[np.isfinite(values)])
-        share = 1.0 - (np.arange(len(ordered)) + 0.5) / len(ordered)
+        share = 1.0 - (np.arange(len(ordered)) + 0.5) / max(len(ordered), 1)
         axes.semilogy(ordered, share, color=COLOURS[i % len(COLOURS)], label=law)
-    reached = max(float(np.nanmax(values)) for values in peaks.values())
+    reached = max((float(np.nanmax(values)) for values in peaks.values() if np.isfinite(values).any()), default=0.0)
     for name, level in limits.items():
         if level < 1.6 * reached:
             axes.axvline(level, color="0.5", linewidth=0.8, linestyle="--")
@@ -40,13 +86,12 @@ def plot_peaks(peaks: Mapping[str, np.ndarray], limits: Mapping[str, float]) -> 
     axes.set_ylabel("share of flights above it [-]")
     axes.legend(frameon=False, fontsize=style.FONT)
     axes.grid(alpha=0.25)
-    return drawn
+    return axes
 
 
-def plot_times(times: Mapping[str, np.ndarray], limit: float | None) -> Figure:
+def plot_times(times: Mapping[str, np.ndarray], limit: float | None, axes: Axes | None = None) -> Axes:
     """Draw how long docking takes: law → time of each flight that docked [s]; the limit [s] where there is one."""
-    drawn = Figure(figsize=(7.6, 3.6), layout="constrained")
-    axes = drawn.subplots()
+    axes = new_axes(axes, 3.6)
     finite = {law: values[np.isfinite(values)] for law, values in times.items()}
     everything = np.concatenate(list(finite.values()))
     if len(everything):
@@ -58,23 +103,46 @@ def plot_times(times: Mapping[str, np.ndarray], limit: float | None) -> Figure:
         axes.axvline(limit, color="0.5", linewidth=0.8, linestyle="--")
     axes.set_xlabel("time to dock [s]")
     axes.set_ylabel("flights")
-    return drawn
+    return axes
 
 
-def plot_convergence(settling: Mapping[str, Mapping[str, np.ndarray]], confidence: float) -> Figure:
+def plot_convergence(
+    settling: Mapping[str, Mapping[str, np.ndarray]], confidence: float, axes: Axes | None = None
+) -> Axes:
     """Draw how probabilities settle: limit → `probability.running`."""
-    drawn = Figure(figsize=(7.6, 4.0), layout="constrained")
-    axes = drawn.subplots()
+    axes = new_axes(axes, 4.0)
     for i, (name, path) in enumerate(settling.items()):
         colour = COLOURS[i % len(COLOURS)]
-        axes.fill_between(path["flights"], path["low"], path["high"], color=colour, alpha=0.15, linewidth=0)
+        axes.fill_between(path["flights"], path["low"], path["high"], color=colour, alpha=0.12, linewidth=0)
         dash = "-" if i < len(COLOURS) else "--"
         axes.semilogx(path["flights"], path["probability"], dash, color=colour, label=name.replace("_", " "))
     axes.set_xlabel("flights")
     axes.set_ylabel(f"probability, {100 * confidence:g} % interval [-]")
-    axes.legend(frameon=False, fontsize=style.FONT)
+    axes.legend(frameon=False, fontsize=style.FONT, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     axes.grid(alpha=0.25)
-    return drawn
+    return axes
+
+
+def plot_importance(entries: Sequence[Mapping[str, Any]], axes: Axes | None = None) -> Axes:
+    """Draw rank correlations, and Sobol's total indices where the design gave them; entries from `Importance`."""
+    sobol = entries[0]["total"] is not None
+    axes = new_axes(axes, 0.34 * len(entries) + 1.2)
+    rows = np.arange(len(entries))
+    if sobol:
+        total = np.array([entry["total"] for entry in entries])
+        ends = np.array([[entry["total_low"], entry["total_high"]] for entry in entries]).T
+        reach = np.maximum(np.abs(ends - total), 0.0)
+        axes.barh(rows - 0.18, total, 0.34, color=COLOURS[0], xerr=reach, label="Sobol total")
+        axes.barh(rows + 0.18, [entry["first"] for entry in entries], 0.34, color=COLOURS[1], label="Sobol first order")
+        axes.legend(frameon=False, fontsize=style.FONT)
+        axes.set_xlabel("share of the variance of the peak tension [-]")
+    else:
+        axes.barh(rows, [entry["rank_correlation"] for entry in entries], 0.6, color=COLOURS[0])
+        axes.axvline(0.0, color="0.4", linewidth=0.8)
+        axes.set_xlabel("rank correlation with the peak tension [-]")
+    axes.set_yticks(rows, [entry["name"] for entry in entries], fontsize=style.FONT)
+    axes.invert_yaxis()
+    return axes
 
 
 def plot_tail(peaks: np.ndarray, tail: Mapping[str, Any]) -> Figure:
@@ -107,27 +175,4 @@ def plot_tail(peaks: np.ndarray, tail: Mapping[str, Any]) -> Figure:
     right.set_xlabel("probability per flight [-]")
     right.set_ylabel("tension exceeded with it [N]")
     right.grid(alpha=0.25)
-    return drawn
-
-
-def plot_importance(entries: Sequence[Mapping[str, Any]]) -> Figure:
-    """Draw rank correlations, and Sobol's total indices where the design gave them; entries from `Importance`."""
-    sobol = entries[0]["total"] is not None
-    drawn = Figure(figsize=(7.6, 0.34 * len(entries) + 1.2), layout="constrained")
-    axes = drawn.subplots()
-    rows = np.arange(len(entries))
-    if sobol:
-        total = np.array([entry["total"] for entry in entries])
-        ends = np.array([[entry["total_low"], entry["total_high"]] for entry in entries]).T
-        reach = np.maximum(np.abs(ends - total), 0.0)
-        axes.barh(rows - 0.18, total, 0.34, color=COLOURS[0], xerr=reach, label="Sobol total")
-        axes.barh(rows + 0.18, [entry["first"] for entry in entries], 0.34, color=COLOURS[1], label="Sobol first order")
-        axes.legend(frameon=False, fontsize=style.FONT)
-        axes.set_xlabel("share of the variance of the peak tension [-]")
-    else:
-        axes.barh(rows, [entry["rank_correlation"] for entry in entries], 0.6, color=COLOURS[0])
-        axes.axvline(0.0, color="0.4", linewidth=0.8)
-        axes.set_xlabel("rank correlation with the peak tension [-]")
-    axes.set_yticks(rows, [entry["name"] for entry in entries], fontsize=style.FONT)
-    axes.invert_yaxis()
     return drawn

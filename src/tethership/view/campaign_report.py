@@ -6,14 +6,15 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
 from tethership.campaign.answers import exceeded
 from tethership.campaign.plan import Plan
-from tethership.campaign.probability import running
 from tethership.errors import ConfigError
 from tethership.view import campaign_figures as figures
 from tethership.view.campaign_csv import write_exceedance, write_flights
+from tethership.view.campaign_plot import settling, watched
 from tethership.view.report import Figure, Section, Table, write_report
 from tethership.view.study_tables import NAMES
 
@@ -122,7 +123,9 @@ def _compliance(answers: dict[str, Any]) -> Section | None:
         for r in answers["compliance"]
     ]
     heads = ["requirement", "law", "allowed", "found", "interval", "confidence", "verdict"]
-    words = ["*Met* where the whole interval is at or below what is allowed, *not met* where it is above, else *open*."]
+    words = [
+        "**Met** where the whole interval is at or below what is allowed, **not met** where it is above, else **open**."
+    ]
     return Section("Compliance", words, [Table("Requirements.", heads, cells, verdict_column=6)])
 
 
@@ -161,28 +164,26 @@ def _exceedance(
     )
 
 
-TENSIONS = ("control threshold", "tear", "tensile", "break")
-"""The scenario's watched tensions in words."""
-
-
 def _limit_figures(
     folder: Path, plan: Plan, data: xr.Dataset, answers: dict[str, Any], flags: dict[str, np.ndarray]
 ) -> list[Figure]:
     """Return pictures of peaks, times and convergence."""
     laws = [law.name for law in plan.laws]
-    tensions: dict[str, float] = dict(zip(TENSIONS, plan.scenario.config.watched_tensions(), strict=True))
     peaks = {law: data["tension_max"].values[i] for i, law in enumerate(laws)}
     times = {law: data["docking_time"].values[i] for i, law in enumerate(laws)}
+    confidence = answers["confidence"]
+    rows = {name: of["exceedance"] for name, of in answers["laws"].items()}
     drawn = [
-        _figure(folder, "peaks", figures.plot_peaks(peaks, tensions), "Share of flights whose peak passes a tension."),
+        _figure(folder, "limits", figures.plot_limits(rows, confidence, None), "Probability of passing each limit."),
+        _figure(
+            folder, "peaks", figures.plot_peaks(peaks, watched(plan)), "Share of flights whose peak passes a tension."
+        ),
         _figure(folder, "times", figures.plot_times(times, plan.config.limits.time), "Time to dock."),
     ]
-    confidence = answers["confidence"]
-    passed = {name: of[0] for name, of in flags.items() if 0 < of[0].sum() < of[0].size}
-    if answers["sampling"] == "random" and passed:
-        settling = {name: running(of, confidence) for name, of in passed.items()}
+    paths = settling(flags, 0, confidence)
+    if answers["sampling"] == "random" and paths:
         text = f"How the probabilities of `{laws[0]}` settle with the number of flights."
-        drawn.append(_figure(folder, "convergence", figures.plot_convergence(settling, confidence), text))
+        drawn.append(_figure(folder, "convergence", figures.plot_convergence(paths, confidence), text))
     return drawn
 
 
@@ -282,8 +283,10 @@ def _checks(answers: dict[str, Any]) -> Section:
     return Section("Checks", words, shown)
 
 
-def _figure(folder: Path, name: str, drawing: Drawing, caption: str) -> Figure:
+def _figure(folder: Path, name: str, drawn: Axes | Drawing, caption: str) -> Figure:
     """Write a picture and return it as a figure of the report."""
     path = folder / "figures" / f"{name}.png"
+    drawing = drawn if isinstance(drawn, Drawing) else drawn.get_figure(root=True)
+    assert drawing is not None, "axes of a new figure have one"
     drawing.savefig(path, dpi=140)
     return Figure(caption, path, None, caption)
