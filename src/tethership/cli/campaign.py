@@ -16,10 +16,10 @@ from tethership.cli.common import (
     WindOption,
     parsed_changes,
     print_json,
-    table,
     writable_folder,
 )
 from tethership.cli.progress import Report, progress_bar
+from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
 from tethership.errors import SolveError
 
 EXAMPLE = "Example: tethership campaign gusts --samples 1000 --workers 2"
@@ -48,6 +48,7 @@ def campaign(
         Path | None,
         typer.Option(help="Folder of the campaign; the same again goes on with it. Default: campaigns/NAME."),
     ] = None,
+    csv: CsvOption = None,
     json: JsonOption = False,
 ) -> None:
     """Fly a manoeuvre many times over what may vary, and say how often each limit is passed.
@@ -62,6 +63,7 @@ def campaign(
     }
     folder = Path("campaigns") / Path(name).stem if out is None else out
     writable_folder(folder)
+    writable_csv(csv)
     begun = time.perf_counter()
     with progress_bar(f"campaign {Path(name).stem}") as report:
         varied = _scenario_changes(wind, formulation, changes)
@@ -70,6 +72,7 @@ def campaign(
         except KeyboardInterrupt:
             raise SolveError(f"interrupted; what is flown is in {folder}: run the same command to go on") from None
     result = _concluded(found, folder)
+    result["files"] += write_rows(csv, [row for _, rows in _shown(result) for row in rows])
     result["seconds"] = round(time.perf_counter() - begun, 1)
     if json:
         print_json(result)
@@ -131,18 +134,24 @@ def _footer(plan: Any) -> dict[str, Any]:
     }
 
 
+def _shown(result: dict[str, Any]) -> list[tuple[str, list[Row]]]:
+    """Return titles and rows of what is told: probabilities law by law, and verdicts."""
+    found = []
+    for name, law in result["laws"].items():
+        rows = [
+            Row(f"{limit.replace('_', ' ')}, {name}", row["probability"], "", ".2%", _interval(row))
+            for limit, row in law["exceedance"].items()
+        ]
+        found.append((f"{name}: probability of passing each limit, {100 * result['confidence']:g} % interval", rows))
+    rows = [Row(row["requirement"], row["verdict"], row["law"], "", _interval(row)) for row in result["compliance"]]
+    return [*found, ("requirements", rows)] if rows else found
+
+
 def _print(result: dict[str, Any]) -> None:
     """Print probabilities, times and verdicts."""
     typer.echo(f"{result['campaign']}: {result['runs']} flights, {result['failed']} failed, {result['seconds']:.0f} s")
-    for name, law in result["laws"].items():
-        rows = [
-            (limit.replace("_", " "), f"{100 * row['probability']:.2f} %", _interval(row))
-            for limit, row in law["exceedance"].items()
-        ]
-        table(rows, f"{name}: probability of passing each limit, {100 * result['confidence']:g} % interval")
-    rows = [(row["requirement"], row["verdict"], f"{row['law']}: {_interval(row)}") for row in result["compliance"]]
-    if rows:
-        table(rows, "requirements")
+    for title, rows in _shown(result):
+        print_table(rows, title)
     for path in result["files"]:
         typer.echo(f"wrote {path}")
 
@@ -150,5 +159,5 @@ def _print(result: dict[str, Any]) -> None:
 def _interval(row: dict[str, Any]) -> str:
     """Return an interval in percent."""
     if row["low"] is None:
-        return "no interval"
-    return f"{100 * row['low']:.2f} … {100 * row['high']:.2f} %"
+        return "  no interval"
+    return f"  {100 * row['low']:.2f} … {100 * row['high']:.2f} %"

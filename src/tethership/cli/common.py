@@ -142,11 +142,3 @@ def writable_folder(folder: Path) -> Path:
             f"cannot write into {folder}: {error.strerror or error}; choose another folder with --out"
         ) from error
     return folder
-
-
-def table(rows: list[tuple[str, str, str]], title: str) -> None:
-    """Print rows of (quantity, value, unit) on standard output."""
-    width = max(len(row[0]) for row in rows)
-    typer.echo(title)
-    for name, value, unit in rows:
-        typer.echo(f"  {name:<{width}}  {value:>12}  {unit}".rstrip())

@@ -18,9 +18,9 @@ from tethership.cli.common import (
     chosen_scenario,
     print_json,
     stage,
-    table,
     writable_folder,
 )
+from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario
 
@@ -44,6 +44,7 @@ def dock(
     from_: Annotated[Path | None, typer.Option("--from", help="Fly the stored input of a flight file again.")] = None,
     changes: SetOption = None,
     out: OutOption = Path("out"),
+    csv: CsvOption = None,
     json: JsonOption = False,
 ) -> None:
     """Trim the ship on its cable, fly the docking manoeuvre and show what happened.
@@ -53,9 +54,10 @@ def dock(
     given = (scenario, wind, formulation, layers, changes, no_sas, solver)
     if from_ is not None and given != ("docking", None, None, None, None, False, "adaptive"):
         raise ConfigError(
-            "--from flies the stored input as it is; leave out the scenario and all flags but --out, --json"
+            "--from flies the stored input as it is; leave out the scenario and all flags but --out, --csv, --json"
         )
     writable_folder(out)
+    writable_csv(csv)
     if from_ is not None and from_.resolve() == (out / "flight.nc").resolve():
         raise ConfigError(f"--from {from_} would be overwritten; choose another folder with --out")
     if from_ is not None:
@@ -72,11 +74,12 @@ def dock(
             typer.echo(message, err=True)
     flight.save(out / "flight.nc")
     result = summary(flown_scenario, flight) | {"trim_outcome": trim_outcome}
-    result["files"] = [str(out / "flight.nc"), *_drawn(flight, out)]
+    rows = _rows(result, flight)
+    result["files"] = [str(out / "flight.nc"), *_drawn(flight, out), *write_rows(csv, rows)]
     if json:
         print_json(result)
     else:
-        _print(result, flight)
+        _print(result, flight, rows)
     if result["cable_warning"] and not json:  # in the JSON it has its key
         typer.echo(f"tethership: warning: {result['cable_warning']}", err=True)
     if not flight.outcome.is_answer:
@@ -182,29 +185,30 @@ def summary(scenario: Scenario, flight: "Flight") -> dict[str, Any]:
     }
 
 
-def _print(result: dict[str, Any], flight: "Flight") -> None:
-    """Print the metrics as a table."""
-    limits = flight.attributes["limits"]
-    layers = " + ".join(result["layers"]) or "constant rewind"
-    rows = [
-        ("outcome", result["outcome"], ""),
-        ("flight time", f"{result['flight_time']:.2f}", "s"),
-        ("largest tension", f"{result['tension_max']:.1f}", "N"),
-        ("mean tension", f"{result['tension_mean']:.1f}", "N"),
-        ("slowest rewind rate", f"{result['rewind_rate_min']:.3f}", "m/s"),
-        *[
-            (f"time above {limit:g} N", f"{seconds:.2f}", "s")
-            for limit, seconds in zip(limits, result["seconds_above"], strict=True)
-        ],
-        ("actuator duty cycle ADC", f"{result['ADC']:.3f}", "1/s"),
-        ("control energy E", f"{result['E']:.3f}", ""),
-        ("pitch, root mean square", f"{result['theta_rms']:.2f}", "deg"),
-        ("least hull clearance", f"{result['clearance_min']:.2f}", "m"),
-        ("time with a throttle saturated", f"{result['saturated_seconds']:.2f}", "s"),
-        ("jumps of the misalignment", str(result["misalignment_jumps"]), ""),
+def _rows(result: dict[str, Any], flight: "Flight") -> list[Row]:
+    """Return the metrics as rows of a table."""
+    watched = zip(flight.attributes["limits"], result["seconds_above"], strict=True)
+    return [
+        Row("outcome", result["outcome"]),
+        Row("flight time", result["flight_time"], "s", ".2f"),
+        Row("largest tension", result["tension_max"], "N", ".1f"),
+        Row("mean tension", result["tension_mean"], "N", ".1f"),
+        Row("slowest rewind rate", result["rewind_rate_min"], "m/s", ".3f"),
+        *[Row(f"time above {limit:g} N", seconds, "s", ".2f") for limit, seconds in watched],
+        Row("actuator duty cycle ADC", result["ADC"], "1/s", ".3f"),
+        Row("control energy E", result["E"], "", ".3f"),
+        Row("pitch, root mean square", result["theta_rms"], "deg", ".2f"),
+        Row("least hull clearance", result["clearance_min"], "m", ".2f"),
+        Row("time with a throttle saturated", result["saturated_seconds"], "s", ".2f"),
+        Row("jumps of the misalignment", result["misalignment_jumps"]),
     ]
+
+
+def _print(result: dict[str, Any], flight: "Flight", rows: list[Row]) -> None:
+    """Print the metrics as a table."""
+    layers = " + ".join(result["layers"]) or "constant rewind"
     sas = "SAS, " if result["sas"] else ""
-    table(rows, f"wind {result['wind']:g} m/s, {sas}{layers}, formulation {result['formulation']}")
+    print_table(rows, f"wind {result['wind']:g} m/s, {sas}{layers}, formulation {result['formulation']}")
     typer.echo(flight.outcome.value)
     for path in result["files"]:
         typer.echo(f"wrote {path}")

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from tethership.cli.common import JsonOption, print_json
+from tethership.cli.tables import CsvOption, writable_csv, write_csv
 from tethership.errors import ConfigError
 from tethership.scenario.load import check_file, describe_packaged, packaged_text, read_document
 
@@ -14,9 +15,11 @@ VALIDATE_EXAMPLE = "Example: tethership validate my_docking.toml"
 NEW_EXAMPLE = "Example: tethership new my_docking"
 
 
-def list_(json: JsonOption = False) -> None:
+def list_(csv: CsvOption = None, json: JsonOption = False) -> None:
     """List the packaged scenarios, vehicles, solver settings and campaigns."""
+    writable_csv(csv)
     found = describe_packaged()
+    write_csv(csv, ("kind", "name", "meaning"), ([kind, *item] for kind, of in found.items() for item in of.items()))
     if json:
         print_json(found)
         return

@@ -13,10 +13,10 @@ from tethership.cli.common import (
     SetOption,
     chosen_scenario,
     print_json,
-    table,
     writable_folder,
 )
 from tethership.cli.progress import progress_bar
+from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
 from tethership.errors import ConfigError
 
 EXAMPLE = "Example: tethership identify --formulation published --out fit"
@@ -42,6 +42,7 @@ def identify(
     ] = 100,
     changes: SetOption = None,
     out: OutOption = Path("out"),
+    csv: CsvOption = None,
     json: JsonOption = False,
 ) -> None:
     """Fit what the paper does not publish (fins, hull drag, thrust) to its Tables 3-6 at 6 and 12 m/s.
@@ -59,6 +60,7 @@ def identify(
     if 2**power < population:
         raise ConfigError(f"2^{power} Sobol points are fewer than the population of {population}; raise --power")
     writable_folder(out)
+    writable_csv(csv)
     budget = Budget(power, population, generations, rounds, left_out)
     with progress_bar("identify") as report:
         found = fit(loaded, budget, seed, lambda what, share, least: report(f"{what}, misfit {least:.3f}", share))
@@ -72,7 +74,7 @@ def identify(
     vehicle_file = out / f"lotte_identified_{loaded.formulation}.toml"
     fit_file.write_text(fit_text(document), encoding="utf-8")
     vehicle_file.write_text(vehicle_of(document), encoding="utf-8")
-    document["files"] = [str(fit_file), str(vehicle_file)]
+    document["files"] = [str(fit_file), str(vehicle_file), *write_rows(csv, [*_fitted(document), *_quality(document)])]
     if json:
         print_json(document)
     else:
@@ -125,22 +127,31 @@ def vehicle_of(document: dict[str, Any]) -> str:
     )
 
 
+def _fitted(document: dict[str, Any]) -> list[Row]:
+    """Return the fitted numbers as rows of a table."""
+    ends = {name: f"  [{low:.4g} … {high:.4g}]" for name, (low, _, high) in document["spread"].items()}
+    return [
+        Row(name, value, document["units"][name], ".4g", ends[name] + _flag(name, document))
+        for name, value in document["parameters"].items()
+    ]
+
+
+def _quality(document: dict[str, Any]) -> list[Row]:
+    """Return the misfits as rows of a table."""
+    left_out = document["left_out_misfit"]
+    return [
+        Row("misfit, all", document["misfit"], "", ".3f"),
+        Row("misfit, tables", document["tables_misfit"], "", ".3f"),
+        *[Row(f"misfit of {name} left out", value, "", ".3f") for name, value in left_out.items()],
+        Row("vectors looked at", document["vectors"]),
+    ]
+
+
 def _print(document: dict[str, Any]) -> None:
     """Print parameters, spread and misfits."""
-    rows = [
-        (name, f"{value:.4g}", f"{document['units'][name]}  [{low:.4g} … {high:.4g}]{_flag(name, document)}")
-        for (name, value), (low, _, high) in zip(
-            document["parameters"].items(), document["spread"].values(), strict=True
-        )
-    ]
-    table(rows, f"formulation {document['formulation']}: best vector, and 5-95 % of all within 10 % of its misfit")
-    rows = [
-        ("misfit, all", f"{document['misfit']:.3f}", ""),
-        ("misfit, tables", f"{document['tables_misfit']:.3f}", ""),
-        *[(f"misfit of {name} left out", f"{value:.3f}", "") for name, value in document["left_out_misfit"].items()],
-        ("vectors looked at", str(document["vectors"]), ""),
-    ]
-    table(rows, "quality (0 is agreement; 0.83 is one tolerance off in every number)")
+    title = f"formulation {document['formulation']}: best vector, and 5-95 % of all within 10 % of its misfit"
+    print_table(_fitted(document), title)
+    print_table(_quality(document), "quality (0 is agreement; 0.83 is one tolerance off in every number)")
     if document["spectrum_unmet"]:
         typer.echo(f"The best vector's free ship does not have: {', '.join(document['spectrum_unmet'])}")
     for path in document["files"]:

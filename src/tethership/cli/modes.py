@@ -19,12 +19,16 @@ from tethership.cli.common import (
     stage,
     writable_folder,
 )
+from tethership.cli.tables import CsvOption, writable_csv, write_csv
 from tethership.errors import ConfigError, suggestion
 
 if TYPE_CHECKING:
     from tethership.analysis import LinearModel, Mode, Modes, Sensitivities
 
 EXAMPLE = "Example: tethership modes --wind 9 --sensitivity pendulum"
+
+COLUMNS = ("name", "real", "imaginary", "frequency", "damping", "half_or_double_time", "period", "stable")
+"""Of the table of modes, SI: λ [1/s], frequency [rad/s], times [s]."""
 
 PARTS = ("full", "nine", "longitudinal", "lateral")
 
@@ -41,16 +45,19 @@ def modes(
     ] = None,
     changes: SetOption = None,
     out: OutOption | None = None,
+    csv: CsvOption = None,
     json: JsonOption = False,
 ) -> None:
     """Linearise the ship about its trim and name its modes.
 
-    With --out the result is also written there as modes.json, and the linear model as model.nc.
+    With --out the result is also written there as modes.json, the linear model as model.nc, and every mode drawn as
+    motion of the ship in modes.png.
     """
     from tethership.analysis import TrimOutcome, linearize, trim
 
     if part not in PARTS:
         raise ConfigError(f"--part {part!r} is no part{suggestion(part, PARTS)} Allowed: {', '.join(PARTS)}")
+    writable_csv(csv)
     folder = None if out is None else writable_folder(out)
     loaded = chosen_scenario(scenario, wind, formulation, changes)
     with stage("trim"):
@@ -75,6 +82,11 @@ def modes(
     if folder is not None:
         (folder / "modes.json").write_text(json_text(result), encoding="utf-8")
         model.save(folder / "model.nc")
+        with stage("draw"):
+            from tethership.view.mode_shape import plot_all_modes
+
+            plot_all_modes(model).savefig(folder / "modes.png", dpi=120)
+    write_csv(csv, COLUMNS, ([values[key] for key in COLUMNS] for values in map(_numbers, found.modes)))
     if json:
         print_json(result)
     else:
@@ -127,6 +139,11 @@ def _mode(mode: "Mode") -> dict[str, Any]:
         "participation": mode.participation,
         "shape": {state: pair(value) for state, value in mode.shape.items()},
     }
+
+
+def _numbers(mode: "Mode") -> dict[str, Any]:
+    """Return one mode as a row of a table."""
+    return {**mode._asdict(), "real": mode.eigenvalue.real, "imaginary": mode.eigenvalue.imag, "stable": mode.stable}
 
 
 def _ranked(table: "Sensitivities") -> dict[str, Any]:

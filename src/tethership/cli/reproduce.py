@@ -10,6 +10,7 @@ import typer
 from tethership._version import __version__
 from tethership.cli.common import JsonOption, json_text, print_json, writable_folder
 from tethership.cli.progress import progress_bar
+from tethership.cli.tables import CsvOption, writable_csv, write_csv
 from tethership.errors import ConfigError, suggestion
 
 if TYPE_CHECKING:
@@ -49,6 +50,7 @@ def reproduce(
     seed: Annotated[int, typer.Option(min=0, help="Of perturbations.")] = 1,
     fresh: Annotated[bool, typer.Option("--fresh", help="Compute everything again.")] = False,
     out: Annotated[Path, typer.Option(help="Folder for the report and all that is in it.")] = Path("reproduction"),
+    csv: CsvOption = None,
     json: JsonOption = False,
 ) -> None:
     """Compute Tables 3-6, Figures 6-15 and every claim of the paper, from the stored fits, and write a report.
@@ -62,6 +64,7 @@ def reproduce(
     jobs = _chosen(only)
     settings = Settings(_formulation(formulation), flights=flights, seed=seed)
     writable_folder(out)
+    writable_csv(csv)
     begun = time.perf_counter()
     with progress_bar("reproduce") as report:
         anew = run_jobs(jobs, out, settings, report, fresh)
@@ -78,7 +81,9 @@ def reproduce(
             result[name] = load_part(out, name)
     result["counts"] = _counts(result)
     (out / "tables.json").write_text(json_text(result), encoding="utf-8")
-    result["files"] = [str(path), str(out / "tables.json")]
+    keys = ("wind", "metric", "published", "computed", "ratio", "verdict")
+    rows = ([name, *(row[key] for key in keys)] for name, table in result["tables"].items() for row in table)
+    result["files"] = [str(path), str(out / "tables.json"), *write_csv(csv, ("table", *keys), rows)]
     result["computed_anew"] = [name for name, again in anew.items() if again]
     result["seconds"] = round(time.perf_counter() - begun, 1)
     if json:

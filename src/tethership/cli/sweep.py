@@ -2,6 +2,7 @@
 
 import json as json_module
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -24,6 +25,7 @@ from tethership.cli.common import (
     stage,
     writable_folder,
 )
+from tethership.cli.tables import CsvOption, writable_csv, write_csv
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario
 
@@ -50,6 +52,7 @@ def sweep(
     formulation: FormulationOption = None,
     changes: SetOption = None,
     out: OutOption = Path("out"),
+    csv: CsvOption = None,
     json: JsonOption = False,
 ) -> None:
     """Trim and linearise along any parameters, follow every mode by name, draw the root locus.
@@ -59,6 +62,7 @@ def sweep(
     if (over is None) == (figure is None):
         raise ConfigError("name what to vary, --over wind=6:12:13, or a figure of the paper, --figure 7 (not both)")
     writable_folder(out)
+    writable_csv(csv)
     if figure is not None:
         if scenario != "docking":
             raise ConfigError(f"--figure has its own scenarios; leave out {scenario!r}, or change values with --set")
@@ -66,6 +70,9 @@ def sweep(
     else:
         loaded = chosen_scenario(scenario, wind, formulation, changes)
         result, found = _swept(loaded, over or [], out)
+    if csv is not None:
+        names = list(dict.fromkeys(name for one in found for name in one.values))
+        result["files"] += write_csv(csv, [*names, "track", "real", "imaginary", "outcome"], _csv_rows(found, names))
     if json:
         print_json(result)
     else:
@@ -160,6 +167,17 @@ def summary(found: "Sweep") -> dict[str, Any]:
 
 def _root(value: complex) -> list[float] | None:
     return None if math.isnan(value.real) else pair(value)
+
+
+def _csv_rows(found: list["Sweep"], names: list[str]) -> Iterator[list[Any]]:
+    """Yield a row for each point and track: parameters [SI], eigenvalue [1/s], how the trim ended."""
+    for one in found:
+        for i, outcome in enumerate(one.outcomes):
+            place = [one.values[name][i] if name in one.values else "" for name in names]
+            for track in one.tracks:
+                root = complex(one.track(track)[i])
+                numbers = ["", ""] if math.isnan(root.real) else [root.real, root.imag]
+                yield [*place, track, *numbers, outcome.name]
 
 
 def _axis(scenario: Scenario, text: str) -> dict[str, np.ndarray]:

@@ -15,15 +15,14 @@ from tethership.cli.common import (
     chosen_scenario,
     json_text,
     print_json,
-    table,
     writable_folder,
 )
+from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
 from tethership.errors import ConfigError
+from tethership.results.schema import GROUND, REGIMES
 from tethership.scenario import Scenario
 
 EXAMPLE = "Example: tethership tension --end -11.3137 0 -11.3137 --length 20 --wind-vector -6 0 0 --json"
-
-REGIMES = ("slack", "joint", "taut")
 
 
 def tension(
@@ -46,6 +45,7 @@ def tension(
     formulation: FormulationOption = None,
     changes: SetOption = None,
     out: OutOption | None = None,
+    csv: CsvOption = None,
     json: JsonOption = False,
 ) -> None:
     """Tension and shape of one cable of a scenario, its ends put where you say.
@@ -54,6 +54,7 @@ def tension(
     """
     loaded = chosen_scenario(scenario, wind, formulation, changes)
     index = _cable_index(loaded, cable)
+    writable_csv(csv)
     folder = None if out is None else writable_folder(out)
     chosen = loaded.config.cables[index]
     reach = chosen.length if length is None else length
@@ -63,20 +64,25 @@ def tension(
     result = _computed(loaded, index, np.array(end), place, reach, np.array(velocity), wind_vector)
     if folder is not None:
         (folder / "tension.json").write_text(json_text(result), encoding="utf-8")
+    rows = _rows(result)
+    write_rows(csv, rows)
     if json:
         print_json(result)
         return
-    rows = [
-        ("tension at the ship", f"{result['tension']:.3f}", "N"),
-        ("force on the ship, north", f"{result['force'][0]:.3f}", "N"),
-        ("force on the ship, east", f"{result['force'][1]:.3f}", "N"),
-        ("force on the ship, down", f"{result['force'][2]:.3f}", "N"),
-        ("tension at the anchor", f"{np.linalg.norm(result['anchor_force']):.3f}", "N"),
-        ("elongation", f"{result['elongation']:.5f}", ""),
-        ("regime", result["regime"], ""),
-        ("lowest point, down", f"{result['lowest_point'][2]:.3f}", "m"),
+    print_table(rows, f"cable {chosen.name!r}, {reach:g} m, formulation {loaded.formulation}")
+
+
+def _rows(result: dict[str, Any]) -> list[Row]:
+    """Return forces and place as rows of a table."""
+    force = map(float, result["force"])
+    return [
+        Row("tension at the ship", result["tension"], "N", ".3f"),
+        *[Row(f"force on the ship, {axis}", part, "N", ".3f") for axis, part in zip(GROUND, force, strict=True)],
+        Row("tension at the anchor", float(np.linalg.norm(result["anchor_force"])), "N", ".3f"),
+        Row("elongation", result["elongation"], "", ".5f"),
+        Row("regime", result["regime"]),
+        Row("lowest point, down", float(result["lowest_point"][2]), "m", ".3f"),
     ]
-    table(rows, f"cable {chosen.name!r}, {reach:g} m, formulation {loaded.formulation}")
 
 
 def _cable_index(scenario: Scenario, name: str | None) -> int:

@@ -1,6 +1,6 @@
 """`tethership trim`: the equilibrium of a scenario."""
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 import typer
@@ -17,9 +17,13 @@ from tethership.cli.common import (
     json_text,
     print_json,
     stage,
-    table,
     writable_folder,
 )
+from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
+from tethership.scenario import Scenario
+
+if TYPE_CHECKING:
+    from tethership.analysis import TrimPoint
 
 EXAMPLE = "Example: tethership trim aerostat --wind 10 --json"
 
@@ -38,6 +42,7 @@ def trim(
     ] = None,
     changes: SetOption = None,
     out: OutOption | None = None,
+    csv: CsvOption = None,
     json: JsonOption = False,
 ) -> None:
     """Find where the ship rests or flies steadily; throttles of least norm where there is a choice.
@@ -48,6 +53,7 @@ def trim(
     from tethership.analysis import trim as solve
     from tethership.system.state import STATE_NAMES
 
+    writable_csv(csv)
     folder = None if out is None else writable_folder(out)
     loaded = chosen_scenario(scenario, wind, formulation, changes)
     names = None if unknowns is None else [name.strip() for name in unknowns.split(",")]
@@ -72,17 +78,24 @@ def trim(
     }
     if folder is not None:
         (folder / "trim.json").write_text(json_text(result), encoding="utf-8")
+    rows = _rows(loaded, point, state)
+    write_rows(csv, rows)
     if json:
         print_json(result)
     else:
-        vehicle = loaded.config.vehicle
-        rows = [(t.name, f"{d:.4f}", "") for t, d in zip(vehicle.thrusters, point.command.throttle, strict=True)]
-        rows += [
-            (f"tension {c.name}", f"{t:.2f}", "N") for c, t in zip(loaded.config.cables, point.tension, strict=True)
-        ]
-        units = dict.fromkeys(ANGLES, "deg") | dict.fromkeys("uvw", "m/s") | dict.fromkeys("pqr", "rad/s")
-        rows += [(name, f"{value:.4f}", units.get(name, "m")) for name, value in state.items()]
-        rows += [("largest residual", f"{np.abs(np.asarray(point.residual)).max():.2e}", "N, N m")]
-        table(rows, f"{point.outcome.name}: {point.outcome.value}")
+        print_table(rows, f"{point.outcome.name}: {point.outcome.value}")
     if point.outcome is not TrimOutcome.converged:
         raise typer.Exit(NO_ANSWER)
+
+
+def _rows(loaded: Scenario, point: "TrimPoint", state: dict[str, float]) -> list[Row]:
+    """Return throttles, tensions and states as rows of a table."""
+    throttles = zip(loaded.config.vehicle.thrusters, point.command.throttle, strict=True)
+    tensions = zip(loaded.config.cables, point.tension, strict=True)
+    units = dict.fromkeys(ANGLES, "deg") | dict.fromkeys("uvw", "m/s") | dict.fromkeys("pqr", "rad/s")
+    return [
+        *[Row(thruster.name, float(throttle), "", ".4f") for thruster, throttle in throttles],
+        *[Row(f"tension {cable.name}", float(tension), "N", ".2f") for cable, tension in tensions],
+        *[Row(name, value, units.get(name, "m"), ".4f") for name, value in state.items()],
+        Row("largest residual", float(np.abs(np.asarray(point.residual)).max()), "N, N m", ".2e"),
+    ]

@@ -14,10 +14,10 @@ from tethership.cli.common import (
     SetOption,
     chosen_scenario,
     print_json,
-    table,
     writable_folder,
 )
 from tethership.cli.progress import progress_bar
+from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
 from tethership.errors import ConfigError
 
 EXAMPLE = "Example: tethership tune docking_paper --wind 12 --out tuned"
@@ -36,6 +36,7 @@ def tune(
     seed: Annotated[int, typer.Option(min=0, help="Of everything random.")] = 1,
     changes: SetOption = None,
     out: OutOption = Path("out"),
+    csv: CsvOption = None,
     json: JsonOption = False,
 ) -> None:
     """Tune the gains of SAS, rewind, heading and navigation for one wind.
@@ -52,6 +53,7 @@ def tune(
         raise ConfigError(f"--searched {searched} is more than the {flights} flights there are; lower it")
     loaded = chosen_scenario(scenario, wind, formulation, changes)
     writable_folder(out)
+    writable_csv(csv)
     with progress_bar("tune") as report:
         found = search(
             loaded,
@@ -63,7 +65,10 @@ def tune(
             lambda what, share, least: report(f"{what}, cost {least:.3f}", share),
         )
     document = tuning_document(found, loaded, seed, flights)
-    document["files"] = _written(document, scenario, changes, out)
+    document["files"] = [
+        *_written(document, scenario, changes, out),
+        *write_rows(csv, [*_gains(document), *_effects(document)]),
+    ]
     if json:
         print_json(document)
     else:
@@ -101,29 +106,40 @@ def _written(document: dict[str, Any], name: str, changes: list[str] | None, out
     return files
 
 
+EFFECTS = {
+    "saturated": ("flights with a saturated throttle", 100.0, "%"),
+    "saturated_seconds": ("mean time saturated", 1.0, "s"),
+    "torn": ("flights above the tear force", 100.0, "%"),
+    "late": ("flights that dock too late", 100.0, "%"),
+    "undocked": ("flights that do not dock", 100.0, "%"),
+    "peak_mean": ("mean peak tension", 1.0, "N"),
+    "peak_high": ("95th percentile of the peak", 1.0, "N"),
+    "duty": ("mean ADC", 1.0, "1/s"),
+    "effort": ("mean E", 1.0, ""),
+    "pitch": ("mean pitch, root mean square", 1.0, "deg"),
+    "time": ("mean flight time", 1.0, "s"),
+}
+"""What is told of a set of gains: its words, factor and unit."""
+
+
+def _gains(document: dict[str, Any]) -> list[Row]:
+    """Return the gains as rows of a table."""
+    former = document["former"]
+    return [Row(name, value, "", ".4g", f"was {former[name]:.4g}") for name, value in document["parameters"].items()]
+
+
+def _effects(document: dict[str, Any]) -> list[Row]:
+    """Return what the gains do as rows of a table."""
+    after, before = document["after"], document["before"]
+    return [
+        Row(text, factor * after[key], unit, ".4g", f"  (before {factor * before[key]:.4g})")
+        for key, (text, factor, unit) in EFFECTS.items()
+    ]
+
+
 def _print(document: dict[str, Any]) -> None:
     """Print gains and what they do."""
-    rows = [
-        (name, f"{value:.4g}", f"was {document['former'][name]:.4g}") for name, value in document["parameters"].items()
-    ]
-    table(rows, f"gains for {document['wind']:g} m/s, formulation {document['formulation']}")
-    words = {
-        "saturated": ("flights with a saturated throttle", 100.0, "%"),
-        "saturated_seconds": ("mean time saturated", 1.0, "s"),
-        "torn": ("flights above the tear force", 100.0, "%"),
-        "late": ("flights that dock too late", 100.0, "%"),
-        "undocked": ("flights that do not dock", 100.0, "%"),
-        "peak_mean": ("mean peak tension", 1.0, "N"),
-        "peak_high": ("95th percentile of the peak", 1.0, "N"),
-        "duty": ("mean ADC", 1.0, "1/s"),
-        "effort": ("mean E", 1.0, ""),
-        "pitch": ("mean pitch, root mean square", 1.0, "deg"),
-        "time": ("mean flight time", 1.0, "s"),
-    }
-    rows = [
-        (text, f"{factor * document['after'][key]:.4g}", f"{unit}  (before {factor * document['before'][key]:.4g})")
-        for key, (text, factor, unit) in words.items()
-    ]
-    table(rows, f"over {document['flights']} perturbed flights")
+    print_table(_gains(document), f"gains for {document['wind']:g} m/s, formulation {document['formulation']}")
+    print_table(_effects(document), f"over {document['flights']} perturbed flights")
     for path in document["files"]:
         typer.echo(f"wrote {path}")

@@ -1,0 +1,81 @@
+"""Tables as CSV: the numbers of the JSON, every digit; refused before any work where they cannot be written."""
+
+import csv
+import json
+import subprocess
+import sys
+
+import pytest
+
+from tethership.cli.tables import Row, print_table, write_rows
+
+COMMAND = [sys.executable, "-m", "tethership"]
+
+
+def run(*arguments):
+    return subprocess.run([*COMMAND, *map(str, arguments)], capture_output=True, text=True)
+
+
+def read(path):
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_full_precision_and_words(tmp_path, capsys):
+    rows = [Row("thrust, port", 1.0 / 3.0, "N", ".2f", "  at a bound"), Row("regime", "slack")]
+    assert write_rows(tmp_path / "a.csv", rows) == [str(tmp_path / "a.csv")]
+    found = read(tmp_path / "a.csv")
+    assert float(found[0]["value"]) == 1.0 / 3.0
+    assert [row["quantity"] for row in found] == ["thrust, port", "regime"]
+    print_table(rows, "title")
+    shown = capsys.readouterr().out
+    assert "0.33  N  at a bound" in shown
+    assert shown.startswith("title\n")
+    assert write_rows(None, rows) == []
+
+
+def test_trim(tmp_path):
+    path = tmp_path / "new" / "trim.csv"
+    done = run("trim", "--csv", path, "--json")
+    told = json.loads(done.stdout)
+    found = {row["quantity"]: row for row in read(path)}
+    assert float(found["tension nose"]["value"]) == told["tension"][0]
+    assert found["theta"]["unit"] == "deg"
+
+
+def test_modes(tmp_path):
+    done = run("modes", "--csv", tmp_path / "m.csv", "--out", tmp_path, "--json")
+    told = json.loads(done.stdout)["modes"]
+    found = read(tmp_path / "m.csv")
+    assert [row["name"] for row in found] == [mode["name"] for mode in told]
+    assert [float(row["real"]) for row in found] == [mode["eigenvalue"][0] for mode in told]
+    assert (tmp_path / "modes.png").stat().st_size > 10_000
+
+
+def test_sweep(tmp_path):
+    done = run("sweep", "--over", "wind=6:7:2", "--csv", tmp_path / "s.csv", "--out", tmp_path, "--json")
+    told = json.loads(done.stdout)
+    rows = [row for row in read(tmp_path / "s.csv") if row["track"] == "pendulum"]
+    assert [[float(row["real"]), float(row["imaginary"])] for row in rows] == told["tracks"]["pendulum"]
+    assert [float(row["wind.speed"]) for row in rows] == [6.0, 7.0]
+
+
+def test_list(tmp_path):
+    assert run("list", "--csv", tmp_path / "l.csv").returncode == 0
+    assert {"kind": "vehicles", "name": "lotte"}.items() <= next(
+        row for row in read(tmp_path / "l.csv") if row["name"] == "lotte"
+    ).items()
+
+
+@pytest.mark.parametrize("command", [["trim"], ["list"], ["tension", "--end", "-11", "0", "-11"]])
+def test_a_folder_is_refused(tmp_path, command):
+    done = run(*command, "--csv", tmp_path)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr == f"tethership: --csv {tmp_path} is a folder; name a file, e.g. --csv {tmp_path}/table.csv\n"
+
+
+def test_a_place_that_cannot_be_is_refused():
+    done = run("dock", "--csv", "/proc/none.csv")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "cannot write --csv /proc/none.csv" in done.stderr
