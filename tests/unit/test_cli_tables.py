@@ -2,6 +2,7 @@
 
 import csv
 import json
+import os
 import subprocess
 import sys
 
@@ -79,3 +80,33 @@ def test_a_place_that_cannot_be_is_refused():
     done = run("dock", "--csv", "/proc/none.csv")
     assert (done.returncode, done.stdout) == (2, "")
     assert "cannot write --csv /proc/none.csv" in done.stderr
+
+
+def test_lists(tmp_path):
+    told = json.loads(run("list", "parameters", "--scenario", "docking_paper", "--json").stdout)["parameters"]
+    assert told["wind.speed"]["unit"] == "m/s"
+    assert run("list", "outputs", "--csv", tmp_path / "o.csv").returncode == 0
+    (tension,) = [row for row in read(tmp_path / "o.csv") if row["name"] == "tension"]
+    assert (tension["unit"], tension["dims"]) == ("N", "time × cable")
+    wrong = run("list", "output")
+    assert (wrong.returncode, wrong.stdout) == (2, "")
+    assert "did you mean 'outputs'?" in wrong.stderr
+
+
+@pytest.mark.parametrize(
+    ("typed", "offered"),
+    [
+        ("tethership tri", ["trim"]),
+        ("tethership dock docking_", ["docking_paper", "docking_retuned"]),
+        ("tethership dock --layers rewind,n", ["rewind,navigation"]),
+        ("tethership dock --set wind.s", ["wind.speed="]),
+        ("tethership campaign r", ["retuned"]),
+        ("tethership list outp", ["outputs"]),
+    ],
+)
+def test_the_shell_completes(typed, offered):
+    words = typed.split()
+    asked = {"_TETHERSHIP_COMPLETE": "complete_bash", "COMP_WORDS": typed, "COMP_CWORD": str(len(words) - 1)}
+    script = "from tethership.cli import app; app(prog_name='tethership')"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, env=os.environ | asked)
+    assert done.stdout.split() == offered

@@ -18,6 +18,7 @@ from tethership.cli.common import (
     print_json,
     writable_folder,
 )
+from tethership.cli.completion import complete_campaign
 from tethership.cli.progress import Report, progress_bar
 from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
 from tethership.errors import SolveError
@@ -27,7 +28,11 @@ EXAMPLE = "Example: tethership campaign gusts --samples 1000 --workers 2"
 
 def campaign(
     name: Annotated[
-        str, typer.Argument(help="Packaged campaign (see `tethership list`) or a path that ends in .toml.")
+        str,
+        typer.Argument(
+            help="Packaged campaign (see `tethership list`) or a path that ends in .toml.",
+            autocompletion=complete_campaign,
+        ),
     ],
     samples: Annotated[int | None, typer.Option(min=1, help="Cases, in place of the file's number.")] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Of the cases, in place of the file's.")] = None,

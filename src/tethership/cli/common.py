@@ -12,6 +12,7 @@ from typing import Annotated, Any
 
 import typer
 
+from tethership.cli.completion import complete_formulation, complete_parameter, complete_scenario
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario, load_scenario
 
@@ -25,10 +26,22 @@ NO_ANSWER = 3
 """Exit code when a computation has no answer."""
 
 ScenarioArgument = Annotated[
-    str, typer.Argument(help="Packaged scenario (see `tethership list`) or a path that ends in .toml.")
+    str,
+    typer.Argument(
+        help="Packaged scenario (see `tethership list`) or a path that ends in .toml.", autocompletion=complete_scenario
+    ),
+]
+ScenarioOption = Annotated[
+    str,
+    typer.Option(
+        "--scenario", help="Packaged scenario or a path that ends in .toml.", autocompletion=complete_scenario
+    ),
 ]
 WindOption = Annotated[float | None, typer.Option("--wind", metavar="M_PER_S", help="Speed of the wind [m/s].")]
-FormulationOption = Annotated[str | None, typer.Option(help="consistent or published: hull and cable laws together.")]
+FormulationOption = Annotated[
+    str | None,
+    typer.Option(help="consistent or published: hull and cable laws together.", autocompletion=complete_formulation),
+]
 OutOption = Annotated[Path, typer.Option(help="Folder for the files that are written.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, nothing else.")]
 SetOption = Annotated[
@@ -37,6 +50,7 @@ SetOption = Annotated[
         "--set",
         metavar="KEY=VALUE",
         help="Change one value of the scenario: SI and radians, or with its unit (270deg); repeatable.",
+        autocompletion=complete_parameter,
     ),
 ]
 

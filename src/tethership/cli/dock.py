@@ -20,6 +20,7 @@ from tethership.cli.common import (
     stage,
     writable_folder,
 )
+from tethership.cli.completion import complete_layers, complete_solver
 from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario
@@ -37,10 +38,15 @@ def dock(
     formulation: FormulationOption = None,
     layers: Annotated[
         str | None,
-        typer.Option(help="Of rewind,heading,navigation, by commas; none for SAS alone. Default: the scenario's."),
+        typer.Option(
+            help="Of rewind,heading,navigation, by commas; none for SAS alone. Default: the scenario's.",
+            autocompletion=complete_layers,
+        ),
     ] = None,
     no_sas: Annotated[bool, typer.Option("--no-sas", help="Switch SAS/attitude off.")] = False,
-    solver: Annotated[str, typer.Option(help="adaptive, tight, fixed, or a path that ends in .toml.")] = "adaptive",
+    solver: Annotated[
+        str, typer.Option(help="adaptive, tight, fixed, or a path that ends in .toml.", autocompletion=complete_solver)
+    ] = "adaptive",
     from_: Annotated[Path | None, typer.Option("--from", help="Fly the stored input of a flight file again.")] = None,
     changes: SetOption = None,
     out: OutOption = Path("out"),

@@ -1,4 +1,4 @@
-"""`tethership list`, `validate` and `new`: what is packaged, checking a file, a copy to edit."""
+"""`tethership validate` and `new`: checking a file, a copy to edit."""
 
 from pathlib import Path
 from typing import Annotated
@@ -6,27 +6,12 @@ from typing import Annotated
 import typer
 
 from tethership.cli.common import JsonOption, print_json
-from tethership.cli.tables import CsvOption, writable_csv, write_csv
+from tethership.cli.completion import complete_scenario
 from tethership.errors import ConfigError
-from tethership.scenario.load import check_file, describe_packaged, packaged_text, read_document
+from tethership.scenario.load import check_file, packaged_text, read_document
 
-LIST_EXAMPLE = "Example: tethership list"
 VALIDATE_EXAMPLE = "Example: tethership validate my_docking.toml"
 NEW_EXAMPLE = "Example: tethership new my_docking"
-
-
-def list_(csv: CsvOption = None, json: JsonOption = False) -> None:
-    """List the packaged scenarios, vehicles, solver settings and campaigns."""
-    writable_csv(csv)
-    found = describe_packaged()
-    write_csv(csv, ("kind", "name", "meaning"), ([kind, *item] for kind, of in found.items() for item in of.items()))
-    if json:
-        print_json(found)
-        return
-    for kind, entries in found.items():
-        typer.echo(kind)
-        for name, meaning in entries.items():
-            typer.echo(f"  {name:<12} {meaning}")
 
 
 def validate(
@@ -53,7 +38,9 @@ def _checked(file: str) -> str:
 
 def new(
     name: Annotated[str, typer.Argument(help="Name of the new scenario; NAME.toml and NAME_vehicle.toml are written.")],
-    scenario: Annotated[str, typer.Option("--from", help="Packaged scenario to copy.")] = "docking",
+    scenario: Annotated[
+        str, typer.Option("--from", help="Packaged scenario to copy.", autocompletion=complete_scenario)
+    ] = "docking",
     out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path(),
     json: JsonOption = False,
 ) -> None:

@@ -25,6 +25,7 @@ from tethership.cli.common import (
     stage,
     writable_folder,
 )
+from tethership.cli.completion import complete_parameter
 from tethership.cli.tables import CsvOption, writable_csv, write_csv
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario
@@ -45,6 +46,7 @@ def sweep(
         typer.Option(
             metavar="NAME=FROM:TO:POINTS",
             help="What to vary; NAME=[v1,v2] lists values; commas move several together; repeat for a grid.",
+            autocompletion=complete_parameter,
         ),
     ] = None,
     figure: Annotated[int | None, typer.Option(help="Redraw figure 6 to 11 of the paper instead.")] = None,
