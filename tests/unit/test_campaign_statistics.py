@@ -87,6 +87,13 @@ def test_censored_peaks_do_not_bend_the_tail():
     assert fit_tail(np.minimum(values, end), share=0.15, draws=2).shape < -0.3
 
 
+def test_a_tail_that_is_none_is_said_to_be():
+    generator = np.random.default_rng(2)
+    assert fit_tail(generator.exponential(size=20_000), draws=2).adequate
+    lumps = np.concatenate([generator.random(18_000), 2.0 + 0.01 * generator.standard_normal(2_000)])
+    assert not fit_tail(lumps, share=0.2, draws=2).adequate
+
+
 def test_level_at_the_threshold_s_own_share_is_the_threshold():
     tail = fit_tail(np.random.default_rng(0).exponential(size=2000), draws=20)
     assert tail.level(tail.share)[0] == pytest.approx(tail.threshold)

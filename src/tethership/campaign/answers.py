@@ -140,6 +140,7 @@ def tail_data(tail: Tail, confidence: float) -> dict[str, Any]:
         "excesses": tail.excesses,
         "censored": tail.censored,
         "distance": tail.distance,
+        "adequate": tail.adequate,
         "levels": levels,
     }
 

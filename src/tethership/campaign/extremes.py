@@ -22,6 +22,10 @@ DRAWS = 200
 """Bootstrap samples of the uncertainty."""
 
 
+KOLMOGOROV = 1.36
+"""Kolmogorov's distance times √n that a true distribution passes in 5 % of samples; fitted ones pass it more rarely."""
+
+
 class Tail(NamedTuple):
     """A fitted tail.
 
@@ -53,6 +57,11 @@ class Tail(NamedTuple):
     excesses: int
     censored: int
     distance: float
+
+    @property
+    def adequate(self) -> bool:
+        """Whether the known excesses could be of the fitted tail: Kolmogorov's distance below its 5 % limit 1.36/√n."""
+        return self.distance < KOLMOGOROV / np.sqrt(max(self.excesses, 1))
 
     def level(self, probability: float, confidence: float = 0.95) -> tuple[float, float, float]:
         """Return the level exceeded with a probability [-] per flight, and the ends of its bootstrap interval."""

@@ -240,6 +240,11 @@ def _tails(folder: Path, data: xr.Dataset, answers: dict[str, Any]) -> Section |
             f"{tail['censored']} broken cables, whose peak is only known to be higher: "
             f"shape {tail['shape']:.3f}, scale {tail['scale']:.1f} N; Kolmogorov distance {tail['distance']:.3f}"
             + (f"; the tail ends at {tail['end']:.0f} N." if tail["end"] is not None else "; the tail has no end.")
+            + (
+                ""
+                if tail["adequate"]
+                else " The peaks are not of this form (Kolmogorov, 5 %): take the levels as rough."
+            )
         )
         heads = ["probability per flight", "tension [N]", "interval [N]"]
         shown.append(Table(f"Tension exceeded with a probability, {law}.", heads, cells, note))
