@@ -189,6 +189,10 @@ def test_packaged_campaigns_can_be_planned(name):
         (HEAD + WIND + '[[requirements]]\nlimit = "tear"\nprobability = 0.1', "allowed: control_threshold"),
         (HEAD + WIND + '[[requirements]]\nlimit = "time"\nprobability = 0.1', "limits.time"),
         (HEAD + WIND + '[[laws]]\nname = "a"\nlayers = ["rewinding"]', "rewind"),
+        (
+            HEAD + WIND + '[[laws]]\nname = "a"\nlayers = []\nchanges = { wind = 5.0 }',
+            "sets wind.speed, which varies too",
+        ),
     ],
 )
 def test_what_cannot_be_is_refused_in_one_line(planned, text, said):

@@ -164,7 +164,7 @@ def make_plan(name: str, changes: dict[str, Any] | None = None, scenario_changes
     _check_limits(config, name)
     sample = draw(config, scenario, name)
     laws = config.laws or (LawConfig(name="own", layers=own.layers),)
-    names, values = _columns(scenario, sample, laws)
+    names, values = _columns(scenario, sample, laws, name)
     return Plan(name, document, config, scenario, sample, laws, names, values)
 
 
@@ -185,11 +185,19 @@ def _check_limits(config: CampaignConfig, origin: str) -> None:
             raise ConfigError(f"{origin}: a requirement on {requirement.limit} needs limits.{requirement.limit}")
 
 
-def _columns(scenario: Scenario, sample: Sample, laws: tuple[LawConfig, ...]) -> tuple[tuple[str, ...], np.ndarray]:
+def _columns(
+    scenario: Scenario, sample: Sample, laws: tuple[LawConfig, ...], origin: str
+) -> tuple[tuple[str, ...], np.ndarray]:
     """Return names and values (laws, cases, names) of all that differs from flight to flight."""
     gains = [_gains(scenario, law) for law in laws]
     extra = sorted({name for law in gains for name in law} - set(sample.names))
     known = list_parameters(scenario.config)
+    for law in laws:
+        own = {find_parameter(known, name, scenario.name).name for name in law.changes}
+        if twice := sorted(own & set(sample.names)):
+            raise ConfigError(
+                f"{origin}: law {law.name} sets {', '.join(twice)}, which varies too: leave it out of one of the two"
+            )
     names = (*sample.names, *extra)
     values = np.empty((len(laws), len(sample.values), len(names)))
     values[:, :, : len(sample.names)] = sample.values

@@ -16,7 +16,6 @@ from tethership.cli.common import (
     WindOption,
     parsed_changes,
     print_json,
-    writable_folder,
 )
 from tethership.cli.completion import complete_campaign
 from tethership.cli.progress import Report, progress_bar
@@ -67,7 +66,6 @@ def campaign(
         key: value for key, value in (("samples", samples), ("seed", seed), ("sampling", sampling)) if value is not None
     }
     folder = Path("campaigns") / Path(name).stem if out is None else out
-    writable_folder(folder)
     writable_csv(csv)
     begun = time.perf_counter()
     with progress_bar(f"campaign {Path(name).stem}") as report:
