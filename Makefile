@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: dock test lint bench figures validation clean
+.PHONY: dock test lint docs gallery bench figures validation clean
 
 dock: $(VENV)/.installed
 	$(BIN)/tethership dock --out out
@@ -18,6 +18,13 @@ lint: $(VENV)/.installed-dev
 	$(BIN)/basedpyright
 	$(BIN)/lint-imports
 	$(BIN)/codespell
+
+docs: $(VENV)/.installed-dev
+	$(BIN)/python -m sphinx -W --keep-going -q -b html docs out/docs
+	@echo "open out/docs/index.html"
+
+gallery: $(VENV)/.installed-dev
+	for example in examples/*.py; do $(BIN)/python $$example || exit 1; cp out/$$(basename $$example .py).png docs/gallery/; done
 
 bench: $(VENV)/.installed-dev
 	$(BIN)/python benchmarks/cable.py
