@@ -40,6 +40,7 @@ napoleon_use_ivar = True
 napoleon_use_rtype = False
 toc_object_entries_show_parents = "hide"
 
+plot_basedir = str(HERE)
 plot_formats = ["svg"]
 plot_html_show_formats = False
 plot_html_show_source_link = True
