@@ -13,7 +13,9 @@ strips = hull.strips(jnp.asarray(0.0), jnp.asarray(vehicle.envelope.potential_le
 figure, axes = plt.subplots(figsize=(8, 3.2))
 axes.plot(station, hull.radius(station), "k")
 axes.plot(station, -hull.radius(station), "k")
-axes.vlines(strips.station, -strips.radius, strips.radius, color="C0", linewidth=1, label="strips of the cross-flow drag")
+axes.vlines(
+    strips.station, -strips.radius, strips.radius, color="C0", linewidth=1, label="strips of the cross-flow drag"
+)
 axes.axvspan(vehicle.envelope.potential_length, hull.length, color="0.9", label="behind $l_h$")
 axes.plot(hull.centre(), 0.0, "C3o", label="centre of volume")
 axes.set(xlabel="distance from the nose ξ [m]", ylabel="radius [m]", aspect="equal")

@@ -1,0 +1,122 @@
+"""Every block of Python and every command in the documentation works, as a reader would run it.
+
+One test per page: its blocks run in order, in one namespace and one temporary folder. Commands go through the command line in
+this process and must exit with 0. A block is left out by `<!-- skip: next "why" -->` before it, which a test lists.
+If one failed, the documentation would teach something that does not work.
+"""
+
+import re
+import shlex
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from sybil import Example, Sybil
+from sybil.parsers.myst import CodeBlockParser, PythonCodeBlockParser, SkipParser
+from sybil.parsers.rest import DocTestParser
+
+from tethership import cli
+
+ROOT = Path(__file__).parents[2]
+PAGES = sorted(path for path in (ROOT / "docs").rglob("*.md") if not path.name.endswith(".in.md"))
+WRITTEN = [ROOT / "README.md", *(path for path in PAGES if path.parent.name not in ("gallery", "decisions"))]
+
+LONG = {"reproduce", "identify", "tune", "campaign"}
+"""Commands that the README shows as they are used; the pages of the guide run small ones."""
+
+
+def run_commands(example: Example) -> None:
+    """Run a block of shell: commands of tethership by the command line's own entry, what sets up by its name alone."""
+    for line in commands(example.parsed):
+        words = shlex.split(line, comments=True)
+        if not words or words[0] in ("make", "pip", "git", "cd", "open", "xdg-open", "python"):
+            continue
+        assert words[0] == "tethership", f"a block of shell has {line!r}; what is that?"
+        if Path(example.path).name == "README.md" and words[1] in LONG:
+            continue
+        assert tethership(words) == 0, f"`{line}` failed"
+
+
+def commands(text: str) -> list[str]:
+    """Return the commands of a block, joined at `&&` and continued lines."""
+    joined = re.sub(r"\\\n\s*", " ", text)
+    return [part.strip() for line in joined.splitlines() for part in line.split("&&")]
+
+
+def tethership(words: list[str]) -> int:
+    """Return the exit code of a command."""
+    former, sys.argv = sys.argv, words
+    try:
+        cli.main()
+    except SystemExit as end:
+        return int(end.code or 0)
+    finally:
+        sys.argv = former
+    return 0
+
+
+def lay_file(example: Example) -> None:
+    """Write a block of TOML whose first line names a file, `# mine.toml`, for the commands after it."""
+    named = re.match(r"# (\w+\.toml)$", example.parsed.splitlines()[0])
+    if named:
+        Path(named[1]).write_text(example.parsed, encoding="utf-8")
+    else:
+        tomllib.loads(example.parsed)
+
+
+MARKDOWN = Sybil(
+    parsers=[
+        PythonCodeBlockParser(),
+        CodeBlockParser("sh", run_commands),
+        CodeBlockParser("toml", lay_file),
+        SkipParser(),
+    ]
+)
+DOCSTRINGS = Sybil(parsers=[DocTestParser()])
+
+
+def blocks(page: Path) -> int:
+    """Return how many blocks of a page are run."""
+    return len(re.findall(r"^```(?:python|sh|toml)$", page.read_text(encoding="utf-8"), re.MULTILINE))
+
+
+@pytest.mark.parametrize("page", [p for p in WRITTEN if blocks(p)], ids=lambda p: str(p.relative_to(ROOT)))
+def test_page(page, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for example in MARKDOWN.parse(page):
+        example.evaluate()
+
+
+WITH_EXAMPLES = [path for path in (ROOT / "src").rglob("*.py") if ">>> " in path.read_text(encoding="utf-8")]
+
+
+@pytest.mark.parametrize("path", WITH_EXAMPLES, ids=lambda p: p.stem)
+def test_docstrings(path, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    document = DOCSTRINGS.parse(path)
+    document.namespace.update(vars(sys.modules["tethership"]))
+    for example in document:
+        example.evaluate()
+
+
+def test_what_is_not_run_is_long():
+    """Blocks are left out for their length alone, and few of them."""
+    reasons = [
+        reason
+        for page in WRITTEN
+        for reason in re.findall(r"<!-- skip: next(.*?)-->", page.read_text(encoding="utf-8"))
+    ]
+    assert all("minutes" in reason or "cluster" in reason for reason in reasons), reasons
+    assert len(reasons) <= 12
+
+
+def test_links_lead_somewhere():
+    """Relative links and pictures of every page exist; anchors are checked when the documentation is built."""
+    lost = []
+    for page in (*WRITTEN, *PAGES):
+        text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+        for target in re.findall(r"\]\((?!https?:|mailto:|#)([^)#\s]+)", text):
+            if not (page.parent / target).exists():
+                lost.append(f"{page.relative_to(ROOT)}: {target}")
+    assert lost == []
