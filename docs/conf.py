@@ -32,6 +32,7 @@ myst_heading_anchors = 4
 myst_links_external_new_tab = False
 
 default_role = "literal"
+smartquotes_action = "qe"  # `--out` keeps its two hyphens
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True

@@ -20,6 +20,6 @@ for dial, name in zip(dials, names, strict=True):
         part = mode.shape[state]
         dial.plot([0.0, np.angle(part)], [0.0, abs(part)], marker="o", markevery=[1], label=state)
     dial.set(title=f"{mode.name}\n{mode.period:.0f} s, damping {mode.damping:+.2f}", yticks=[0.5, 1.0], xticklabels=[])
-    dial.legend(loc="lower center", ncols=2, fontsize="small", bbox_to_anchor=(0.5, -0.42), handlelength=1.0)
+    dial.legend(loc="lower center", ncols=2, fontsize="small", bbox_to_anchor=(0.5, -0.3), handlelength=1.0)
 Path("out").mkdir(exist_ok=True)
 figure.savefig("out/b3_mode_shapes.png", dpi=110)

@@ -96,8 +96,14 @@ def fill(app: Sphinx, docname: str, source: list[str]) -> None:
         source[0] = source[0].replace("{{gallery}}", "\n".join(index()))
 
 
+def outdated(app: Sphinx, env: Any, added: set[str], changed: set[str], removed: set[str]) -> list[str]:
+    """Return the index where an example came or went: it is made from their files."""
+    return ["gallery/index"] if any(name.startswith("gallery/") for name in added | removed | changed) else []
+
+
 def setup(app: Sphinx) -> dict[str, Any]:
     """Write the pages before sources are looked for."""
     app.connect("builder-inited", write_pages)
     app.connect("source-read", fill)
+    app.connect("env-get-outdated", outdated)
     return {"parallel_read_safe": True}

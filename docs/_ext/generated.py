@@ -76,6 +76,9 @@ def parameters() -> list[str]:
 
 KINDS = {float: "number", int: "whole number", str: "text", Path: "path", bool: "–"}
 
+UNSAID = {"out": "Folder for the result as a file; none is written if left out."}
+"""Options that the command line itself leaves without a word."""
+
 
 def commands() -> list[str]:
     """Return the reference of the command and its subcommands."""
@@ -105,7 +108,9 @@ def option(entry: Any, hint: Any) -> str:
         value = f"three {inner}s" if typing.get_origin(listed[0]) is tuple else f"{entry.metavar or inner}, repeatable"
     given = "–" if entry.default in (None, False, [], ()) else f"`{entry.default}`"
     default = "**required**" if entry.required else given
-    return f"| {name} | {value} | {default} | {(entry.help or '').replace('|', chr(92) + '|')} |"
+    return (
+        f"| {name} | {value} | {default} | {(entry.help or UNSAID.get(entry.name, '')).replace('|', chr(92) + '|')} |"
+    )
 
 
 def api() -> list[str]:
