@@ -6,6 +6,7 @@ If one failed, the documentation would teach something that does not work.
 """
 
 import contextlib
+import importlib
 import re
 import shlex
 import sys
@@ -21,10 +22,11 @@ from sybil.parsers.rest import DocTestParser
 from tethership import cli
 
 ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "src"
 PAGES = sorted(path for path in (ROOT / "docs").rglob("*.md") if not path.name.endswith(".in.md"))
 WRITTEN = [ROOT / "README.md", *(path for path in PAGES if path.parent.name not in ("gallery", "decisions"))]
 
-LONG = {"reproduce", "identify", "tune", "campaign"}
+LONG = {"reproduce", "identify", "tune", "campaign", "sweep"}
 """Commands that the README shows as they are used; the pages of the guide run small ones."""
 
 
@@ -91,14 +93,14 @@ def test_page(page, tmp_path, monkeypatch):
             example.evaluate()
 
 
-WITH_EXAMPLES = [path for path in (ROOT / "src").rglob("*.py") if ">>> " in path.read_text(encoding="utf-8")]
+WITH_EXAMPLES = [path for path in SOURCE.rglob("*.py") if ">>> " in path.read_text(encoding="utf-8")]
 
 
 @pytest.mark.parametrize("path", WITH_EXAMPLES, ids=lambda p: p.stem)
 def test_docstrings(path, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     document = DOCSTRINGS.parse(path)
-    document.namespace.update(vars(sys.modules["tethership"]))
+    document.namespace.update(vars(importlib.import_module(".".join(path.relative_to(SOURCE).with_suffix("").parts))))
     for example in document:
         example.evaluate()
 

@@ -89,6 +89,13 @@ def trim(
         A name is not known.
     SolveError
         With `throw`, no equilibrium.
+
+    Examples
+    --------
+    >>> import tethership as ts
+    >>> point = ts.trim(ts.load_scenario("docking"))
+    >>> point.outcome.name, round(float(point.tension[0]), 2)
+    ('converged', 14.17)
     """
     _, point = solved(scenario, ask(scenario, unknowns, fixed))
     if throw and point.outcome is TrimOutcome.no_equilibrium:

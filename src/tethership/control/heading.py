@@ -25,6 +25,16 @@ def misalignment(attitude: Float[Array, "3"], offset: Float[Array, "3"]) -> Floa
     Notes
     -----
     χ jumps by π when the tether point passes over the anchor.
+
+    Examples
+    --------
+    The nose points north, the anchor lies north-west, so to port:
+
+    >>> import jax.numpy as jnp
+    >>> from tethership.control import misalignment
+    >>> chi = misalignment(jnp.zeros(3), jnp.array([-10.0, 10.0, -5.0]))
+    >>> round(float(jnp.degrees(chi)), 6)
+    45.0
     """
     nose = horizontal_unit(rotation_matrix(attitude))
     to_anchor = -offset[:2]

@@ -44,7 +44,15 @@ def refined(time: Array, value: Array) -> tuple[Array, Array]:
 
 
 def seconds_above(time: Array, value: Array, threshold: float) -> float:
-    """Return for how long [s] a signal is above a threshold, straight lines between samples."""
+    """Return for how long [s] a signal is above a threshold, straight lines between samples.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from tethership.results.metrics import seconds_above
+    >>> seconds_above(np.array([0.0, 1.0, 2.0]), np.array([0.0, 2.0, 0.0]), 1.0)
+    1.0
+    """
     over = value - threshold
     start, end, step = over[:-1], over[1:], np.diff(time)
     change = np.where(end == start, 1.0, end - start)

@@ -100,7 +100,14 @@ def _packaged(folder: str) -> dict[str, Any]:
 
 
 def list_packaged() -> dict[str, list[str]]:
-    """Return the names of the packaged scenarios, vehicles, solvers and campaigns."""
+    """Return the names of the packaged scenarios, vehicles, solvers and campaigns.
+
+    Examples
+    --------
+    >>> import tethership as ts
+    >>> ts.list_packaged()["solvers"]
+    ['adaptive', 'fixed', 'tight']
+    """
     return {kind: sorted(_packaged(kind)) for kind in KINDS}
 
 
@@ -163,6 +170,13 @@ def load_scenario(name: str = "docking", changes: Mapping[str, Any] | None = Non
     ------
     ConfigError
         Not found, not TOML, or a key, unit or value that cannot be.
+
+    Examples
+    --------
+    >>> import tethership as ts
+    >>> scenario = ts.load_scenario("docking", {"wind.speed": 9.0})
+    >>> scenario.config.wind.speed
+    9.0
     """
     document, origin = _read("scenarios", name)
     if isinstance((changes or {}).get("vehicle"), str):

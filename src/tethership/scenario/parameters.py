@@ -68,7 +68,15 @@ class Parameter(NamedTuple):
 
 
 def list_parameters(config: ScenarioConfig) -> dict[str, Parameter]:
-    """Return every scalar of a validated scenario by its dotted name, and every `*` name of its lists."""
+    """Return every scalar of a validated scenario by its dotted name, and every `*` name of its lists.
+
+    Examples
+    --------
+    >>> import tethership as ts
+    >>> known = ts.list_parameters(ts.load_scenario("docking").config)
+    >>> known["cables.nose.linear_density"].value, known["cables.nose.linear_density"].unit
+    (0.08, 'kg/m')
+    """
     leaves, _ = jax.tree_util.tree_flatten_with_path(config)
     found: dict[str, list[_Leaf]] = {}
     together: dict[str, list[_Leaf]] = {}
