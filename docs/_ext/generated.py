@@ -12,6 +12,7 @@ from typing import Any
 import file_reference
 import typer.main
 from sphinx.application import Sphinx
+from sphinx.errors import SphinxError
 
 import tethership as ts
 from tethership.campaign.schema import CampaignConfig
@@ -158,6 +159,9 @@ PARTS: dict[str, Callable[[], list[str]]] = {
 
 def fill(app: Sphinx, docname: str, source: list[str]) -> None:
     """Replace the marks of a page."""
+    unknown = set(MARK.findall(source[0])) - set(PARTS)
+    if unknown:
+        raise SphinxError(f"{docname}: nothing makes {sorted(unknown)}; known: {', '.join(PARTS)}")
     if MARK.search(source[0]):
         app.env.note_dependency(str(Path(__file__)), docname=docname)
         source[0] = MARK.sub(lambda mark: "\n".join(PARTS[mark[1]]()), source[0])

@@ -27,7 +27,7 @@ MACROS = {
 }
 """Short forms that pages may use."""
 
-CONVERTER = math_core.LatexToMathML(macros=MACROS)
+CONVERTER = math_core.LatexToMathML(macros=MACROS, fancy_error=False)
 
 
 def converted(latex: str, display: bool, where: str) -> str:
