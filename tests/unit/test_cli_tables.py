@@ -8,6 +8,7 @@ import sys
 
 import pytest
 
+from tethership.cli.common import NUMBER_WITH_UNIT
 from tethership.cli.tables import Row, print_table, write_rows
 
 COMMAND = [sys.executable, "-m", "tethership"]
@@ -110,3 +111,12 @@ def test_the_shell_completes(typed, offered):
     script = "from tethership.cli import app; app(prog_name='tethership')"
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, env=os.environ | asked)
     assert done.stdout.split() == offered
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [("270deg", ("270", "deg")), ("12 m/s", ("12", "m/s")), ("1e-3 m", ("1e-3", "m")), ("2.5e-3", None), ("9", None)],
+)
+def test_an_exponent_is_no_unit(text, found):
+    match = NUMBER_WITH_UNIT.fullmatch(text)
+    assert (match and (match["number"], match["unit"])) == found

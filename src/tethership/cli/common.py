@@ -16,7 +16,9 @@ from tethership.cli.completion import complete_formulation, complete_parameter, 
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario, load_scenario
 
-NUMBER_WITH_UNIT = re.compile(r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>[A-Za-z].*)")
+NUMBER_WITH_UNIT = re.compile(
+    r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>(?![eE][-+]?\d)[A-Za-z].*)"
+)
 """A number with a unit, as in `270deg` or `12 m/s`."""
 
 WRONG_INPUT = 2
@@ -43,6 +45,7 @@ FormulationOption = Annotated[
     typer.Option(help="consistent or published: hull and cable laws together.", autocompletion=complete_formulation),
 ]
 OutOption = Annotated[Path, typer.Option(help="Folder for the files that are written.")]
+MaybeOutOption = Annotated[Path | None, typer.Option(help="Folder for the files; without it none are written.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, nothing else.")]
 SetOption = Annotated[
     list[str] | None,

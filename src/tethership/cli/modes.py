@@ -8,7 +8,7 @@ from tethership.cli.common import (
     NO_ANSWER,
     FormulationOption,
     JsonOption,
-    OutOption,
+    MaybeOutOption,
     ScenarioArgument,
     SetOption,
     WindOption,
@@ -44,7 +44,7 @@ def modes(
         str | None, typer.Option(metavar="MODE", help="Also rank what moves this mode, e.g. pendulum.")
     ] = None,
     changes: SetOption = None,
-    out: OutOption | None = None,
+    out: MaybeOutOption = None,
     csv: CsvOption = None,
     json: JsonOption = False,
 ) -> None:

@@ -8,7 +8,7 @@ import typer
 from tethership.cli.common import (
     FormulationOption,
     JsonOption,
-    OutOption,
+    MaybeOutOption,
     ScenarioArgument,
     SetOption,
     WindOption,
@@ -44,7 +44,7 @@ def tension(
     wind: WindOption = None,
     formulation: FormulationOption = None,
     changes: SetOption = None,
-    out: OutOption | None = None,
+    out: MaybeOutOption = None,
     csv: CsvOption = None,
     json: JsonOption = False,
 ) -> None:

@@ -9,7 +9,7 @@ from tethership.cli.common import (
     NO_ANSWER,
     FormulationOption,
     JsonOption,
-    OutOption,
+    MaybeOutOption,
     ScenarioArgument,
     SetOption,
     WindOption,
@@ -41,7 +41,7 @@ def trim(
         ),
     ] = None,
     changes: SetOption = None,
-    out: OutOption | None = None,
+    out: MaybeOutOption = None,
     csv: CsvOption = None,
     json: JsonOption = False,
 ) -> None:
