@@ -190,6 +190,10 @@ def test_packaged_campaigns_can_be_planned(name):
         (HEAD + WIND + '[[requirements]]\nlimit = "time"\nprobability = 0.1', "limits.time"),
         (HEAD + WIND + '[[laws]]\nname = "a"\nlayers = ["rewinding"]', "rewind"),
         (
+            varied('distribution = "normal"\nmean = 0.3\ndeviation = 0.1\nunit = "1"', "gusts.0.fraction"),
+            "reaches -0.2",
+        ),
+        (
             HEAD + WIND + '[[laws]]\nname = "a"\nlayers = []\nchanges = { wind = 5.0 }',
             "sets wind.speed, which varies too",
         ),

@@ -1,5 +1,6 @@
 """Campaigns flown for real: batches, resuming after SIGKILL, a Dask cluster that loses a worker, what is refused."""
 
+import csv
 import json
 import os
 import re
@@ -14,13 +15,14 @@ import numpy as np
 import pytest
 
 import tethership as ts
-from tethership.campaign.answers import answer, exceeded, failed
+from tethership.campaign.answers import answer, exceeded, failed, undetermined
 from tethership.campaign.execute import fly_campaign, in_this_process
 from tethership.campaign.plan import make_plan
 from tethership.campaign.store import CampaignStore, open_results
 from tethership.campaign.work import fly_one
 from tethership.errors import ConfigError
 from tethership.scenario.load import packaged_text
+from tethership.simulation.batch import CODES
 
 COMMAND = [sys.executable, "-m", "tethership"]
 
@@ -74,7 +76,7 @@ def test_command_says_runs_failed_and_exceedance(whole):
     for limit in ("control_threshold", "envelope_tear", "cable_break", "winch_pull", "attitude", "time"):
         row = said["exceedance"][limit]
         assert 0.0 <= row["low"] <= row["probability"] <= row["high"] <= 1.0
-    assert {row["verdict"] for row in said["compliance"]} <= {"met", "not met", "open"}
+    assert {row["verdict"] for row in said["compliance"]} <= {"met", "not met", "undecided", "no verdict"}
     for path in said["files"]:
         assert Path(path).exists()
     assert "What varies" in (folder / "report.html").read_text(encoding="utf-8")
@@ -83,7 +85,7 @@ def test_command_says_runs_failed_and_exceedance(whole):
 
 def test_report_in_a_browser(whole, browsed):
     dom = browsed(whole[0] / "report.html")
-    assert "Probability of passing each limit" in dom
+    assert "Probability of exceeding each limit" in dom
     assert 'data-errors="0"' in dom
     assert dom.count("<img") >= 5
 
@@ -302,8 +304,50 @@ def test_plots_show_the_answers(whole, small):
     peaks = ts.plot_campaign(found, kind="peaks").lines[0].get_xdata()
     np.testing.assert_array_equal(peaks, np.sort(found.data["tension_max"].values[0]))
     assert len(ts.plot_campaign(found, kind="convergence", law="heading").lines) >= 2
-    assert len(ts.plot_campaign(found, kind="importance").patches) == len(found.plan.config.vary)
+    assert len(ts.plot_campaign(found, kind="importance").patches) == len(found.plan.config.vary) - 1  # no seed
     assert ts.plot_campaign(found, kind="times").get_xlabel() == "time to dock [s]"
     for given, message in (({"kind": "peak"}, "did you mean 'peaks'"), ({"kind": "convergence", "law": "x"}, "no law")):
         with pytest.raises(ConfigError, match=message):
             ts.plot_campaign(found, **given)
+
+
+def test_flights_without_a_start_have_no_verdict_and_exit_3(tmp_path):
+    """Wind from aside has no equilibrium for six throttles: nothing can be said of the odds."""
+    text = 'title = "Aside"\nscenario = "docking_paper"\nsamples = 6\nworst = 0\nrandom = 0\nverified = 0.0\n'
+    text += '[vary."wind.from_direction"]\ndistribution = "uniform"\nlow = 60.0\nhigh = 90.0\nunit = "deg"\n'
+    text += '[[requirements]]\nlimit = "cable_break"\nprobability = 0.5\n'
+    (tmp_path / "aside.toml").write_text(text, encoding="utf-8")
+    command = [*COMMAND, "campaign", str(tmp_path / "aside.toml"), "--out", str(tmp_path / "out"), "--json"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    told = json.loads(done.stdout)
+    assert done.returncode == 3
+    assert told["failed"] == told["runs"] == 6
+    assert told["outcomes"] == {"no_equilibrium": 6}
+    assert told["compliance"][0]["verdict"] == "no verdict"
+    assert told["compliance"][0]["reason"] == "6 of 6 flights have no result"
+    assert "no flight has a result (no_equilibrium)" in done.stderr
+    with (tmp_path / "out" / "flights.csv").open(encoding="utf-8") as file:
+        assert {(row["outcome"], row["failed"]) for row in csv.DictReader(file)} == {("no_equilibrium", "1")}
+
+
+def test_flights_that_end_early_are_told(whole, plan):
+    folder, told = whole
+    data = open_results(folder)
+    early = data["outcome"].values != CODES.index(ts.Outcome.docked)
+    flags = exceeded(plan, data)
+    for name, left in undetermined(data, flags).items():
+        assert not np.any(left & flags[name])
+        assert not np.any(left & ~early)
+        rows = [law["exceedance"][name]["undetermined"] for law in told["laws"].values()]
+        assert rows == [int(of.sum()) for of in left]
+    assert np.any(early)
+    assert not undetermined(data, flags)["time"].any()
+    assert data["tension_max"].attrs["units"] == "N"
+
+
+def test_a_store_that_lacks_a_number_is_told(whole, tmp_path):
+    folder, _ = whole
+    copy = shutil.copytree(folder, tmp_path / "copy")
+    shutil.rmtree(copy / "results.zarr" / "tension_max")
+    with pytest.raises(ConfigError, match="lacks tension_max"):
+        open_results(copy)

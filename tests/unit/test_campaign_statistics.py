@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 import scipy.stats
 
+from tethership.campaign.compliance import judge, least_flights
 from tethership.campaign.extremes import fit_tail
 from tethership.campaign.importance import rank_importance, sobol_importance
 from tethership.campaign.paired import paired_limit, paired_metric
 from tethership.campaign.probability import clopper_pearson1934, estimate, running
 from tethership.campaign.sampling import saltelli_design
+from tethership.campaign.schema import Requirement
 
 
 def test_no_event_in_n_flights_has_the_upper_end_of_the_closed_form():
@@ -144,3 +146,40 @@ def test_mcnemar_looks_at_discordant_cases_only():
     found = paired_limit("time", first, second)
     assert (found.only_first, found.only_second, found.both) == (10, 0, 50)
     assert found.p_value == pytest.approx(2 * 0.5**10)
+
+
+def judged(exceeding, flights, allowed, undetermined=0, failed=0, sampling="random", replicates=1):
+    """Return a verdict over flights of which the first exceed, the next ended early, the last failed."""
+    places = np.arange(flights)
+    flags = places < exceeding
+    early = (places >= exceeding) & (places < exceeding + undetermined)
+    requirement = Requirement(limit="envelope_tear", probability=allowed)
+    scramble = np.random.default_rng(0).permutation(places) % replicates
+    return judge(requirement, flags, early, places >= flights - failed, sampling, scramble)
+
+
+@pytest.mark.parametrize(
+    ("found", "verdict"),
+    [
+        (judged(0, 736, 0.005), "met"),
+        (judged(0, 735, 0.005), "undecided"),
+        (judged(50, 1000, 0.01), "not met"),
+        (judged(10, 1000, 0.01), "undecided"),
+        (judged(0, 1000, 0.01, undetermined=20), "undecided"),
+        (judged(0, 1000, 0.05, undetermined=20), "met"),
+        (judged(50, 1000, 0.01, undetermined=900), "not met"),
+        (judged(0, 1000, 0.01, failed=51), "no verdict"),
+        (judged(0, 9, 0.01, sampling="grid"), "no verdict"),
+        (judged(39, 1024, 0.01, sampling="sobol", replicates=8), "no verdict"),
+        (judged(400, 1024, 0.01, sampling="sobol", replicates=8), "not met"),
+    ],
+)
+def test_verdicts(found, verdict):
+    assert found["verdict"] == verdict
+    assert bool(found["reason"]) == (verdict == "no verdict")
+
+
+@pytest.mark.parametrize(("allowed", "confidence"), [(0.005, 0.95), (0.01, 0.9), (0.1, 0.99)])
+def test_least_flights_are_just_enough(allowed, confidence):
+    least = least_flights(allowed, confidence)
+    assert clopper_pearson1934(0, least, confidence)[1] <= allowed < clopper_pearson1934(0, least - 1, confidence)[1]

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from tethership.campaign.compliance import judge
 from tethership.campaign.extremes import Tail, fit_tail
 from tethership.campaign.importance import rank_importance, sobol_importance
 from tethership.campaign.paired import paired_limit, paired_metric
@@ -23,6 +24,9 @@ from tethership.simulation.batch import CODES
 UNBALANCED = 1e-3
 """What a trim may leave [1e-3 of the weight]: beyond it the case has no equilibrium."""
 
+NO_START = "no_equilibrium"
+"""How a flight ended whose trim was none."""
+
 LEVELS = (1e-2, 1e-3, 1e-4)
 """Probabilities per flight whose peak tension is extrapolated."""
 
@@ -34,6 +38,41 @@ def failed(data: xr.Dataset) -> np.ndarray:
     """Return which flights have no result, shape (laws, cases)."""
     diverged = data["outcome"].values == CODES.index(Outcome.diverged)
     return diverged | ~(data["unbalanced"].values < UNBALANCED)
+
+
+def outcomes(data: xr.Dataset) -> np.ndarray:
+    """Return how each flight ended, by name, `no_equilibrium` where it had no start; shape (laws, cases)."""
+    names = np.array([code.name for code in CODES])[data["outcome"].values]
+    return np.where(data["unbalanced"].values < UNBALANCED, names, NO_START)
+
+
+def undetermined(data: xr.Dataset, flags: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return for each limit which flights ended before they docked and had not exceeded it by then.
+
+    What they would have done later nobody saw. Time is never undetermined: such a flight has not docked in time.
+    """
+    early = data["outcome"].values != CODES.index(Outcome.docked)
+    return {name: early & ~of & (name != "time") for name, of in flags.items()}
+
+
+def limit_values(plan: Plan) -> dict[str, tuple[float, str]]:
+    """Return the number and unit of each limit; angles in degrees."""
+    control, tear, tensile, weakest = map(float, plan.scenario.config.watched_tensions())
+    limits = plan.config.limits
+    found = {
+        "control_threshold": (control, "N"),
+        "envelope_tear": (tear, "N"),
+        "envelope_tensile": (tensile, "N"),
+        "cable_break": (weakest, "N"),
+        "ground_contact": (0.0, "m of clearance"),
+    }
+    if limits.winch_pull is not None:
+        found["winch_pull"] = (float(limits.winch_pull), "N")
+    if limits.attitude is not None:
+        found["attitude"] = (float(np.degrees(limits.attitude)), "deg")
+    if limits.time is not None:
+        found["time"] = (float(limits.time), "s")
+    return found
 
 
 def exceeded(plan: Plan, data: xr.Dataset) -> dict[str, np.ndarray]:
@@ -80,7 +119,7 @@ def answer(plan: Plan, data: xr.Dataset, confidence: float = 0.95) -> dict[str, 
         "sampling": plan.config.sampling,
         "laws": {name: _of_law(plan, data, flags, i, confidence) for i, name in enumerate(names)},
         "pairs": [_pair(plan, data, flags, a, b) for a, b in itertools.combinations(range(len(names)), 2)],
-        "compliance": [_complied(plan, flags, r, i) for r in plan.config.requirements for i in _laws_of(plan, r)],
+        "compliance": [_complied(plan, data, flags, r, i) for r in plan.config.requirements for i in _laws_of(plan, r)],
         "step_error": step_error(data),
     }
 
@@ -89,16 +128,20 @@ def _of_law(plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray], law: int
     """Return the answers of one law."""
     sampling, replicate = plan.config.sampling, plan.sample.replicate
     rows = _estimated_rows(plan)
+    left, values = undetermined(data, flags), limit_values(plan)
     probabilities = {
-        name: estimate(of[law][rows], sampling, replicate[rows], confidence)._asdict() for name, of in flags.items()
+        name: estimate(of[law][rows], sampling, replicate[rows], confidence)._asdict()
+        | {"undetermined": int(left[name][law][rows].sum()), "value": values[name][0], "unit": values[name][1]}
+        for name, of in flags.items()
     }
-    outcomes = data["outcome"].values[law]
+    codes, ended = data["outcome"].values[law], outcomes(data)[law]
     return {
         "exceedance": probabilities,
-        "outcomes": {code.name: int(np.sum(outcomes == i)) for i, code in enumerate(CODES) if np.any(outcomes == i)},
+        "failed": int(failed(data)[law].sum()),
+        "outcomes": {str(name): int(np.sum(ended == name)) for name in np.unique(ended)},
         "docking_time": _percentiles(data["docking_time"].values[law][rows]),
         "tension_max": _percentiles(data["tension_max"].values[law][rows]),
-        "tail": _tail(plan, data["tension_max"].values[law], outcomes == CODES.index(Outcome.cable_broken), confidence),
+        "tail": _tail(plan, data["tension_max"].values[law], codes == CODES.index(Outcome.cable_broken), confidence),
         "importance": [entry._asdict() for entry in _importance(plan, data["tension_max"].values[law])],
     }
 
@@ -148,19 +191,22 @@ def tail_data(tail: Tail, confidence: float) -> dict[str, Any]:
 def _importance(plan: Plan, peaks: np.ndarray) -> list[Any]:
     """Return what the peak tension hangs on."""
     names, values = plan.sample.names, plan.sample.values
+    moved = tuple(i for i, name in enumerate(names) if not name.endswith(".seed"))  # a seed is a name, no quantity
     if plan.config.sampling == "saltelli":
         return sobol_importance(names, values, peaks, plan.config.seed)
-    return list(rank_importance(names, values, peaks))
+    return list(rank_importance(tuple(names[i] for i in moved), values[:, moved], peaks))
 
 
 def _pair(plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray], first: int, second: int) -> dict[str, Any]:
     """Return two laws on the same cases."""
+    independent = plan.config.sampling == "random"
+    untested: dict[str, Any] = {} if independent else {"p_value": None, "low": None, "high": None}
     metrics = [paired_metric(name, data[name].values[first], data[name].values[second]) for name in COMPARED]
     return {
         "first": plan.laws[first].name,
         "second": plan.laws[second].name,
-        "metrics": [metric._asdict() for metric in metrics if metric is not None],
-        "limits": [paired_limit(name, of[first], of[second])._asdict() for name, of in flags.items()],
+        "metrics": [metric._asdict() | untested for metric in metrics if metric is not None],
+        "limits": [paired_limit(name, of[first], of[second])._asdict() | untested for name, of in flags.items()],
     }
 
 
@@ -169,33 +215,15 @@ def _laws_of(plan: Plan, requirement: Requirement) -> list[int]:
     return [i for i, law in enumerate(plan.laws) if requirement.law in (None, law.name)]
 
 
-def _complied(plan: Plan, flags: dict[str, np.ndarray], requirement: Requirement, law: int) -> dict[str, Any]:
-    """Return a requirement with its verdict: met, not met, or open where the interval holds both."""
-    rows = _estimated_rows(plan)
-    found = estimate(
-        flags[requirement.limit][law][rows], plan.config.sampling, plan.sample.replicate[rows], requirement.confidence
-    )
-    if found.low is None or found.high is None:
-        verdict = "open"
-    else:
-        verdict = (
-            "met"
-            if found.high <= requirement.probability
-            else "not met"
-            if found.low > requirement.probability
-            else "open"
-        )
-    return {
-        "requirement": requirement.text or f"{requirement.limit} in at most {requirement.probability:g} of flights",
-        "limit": requirement.limit,
-        "law": plan.laws[law].name,
-        "allowed": requirement.probability,
-        "probability": found.probability,
-        "low": found.low,
-        "high": found.high,
-        "confidence": requirement.confidence,
-        "verdict": verdict,
-    }
+def _complied(
+    plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray], requirement: Requirement, law: int
+) -> dict[str, Any]:
+    """Return a requirement under one law, judged."""
+    rows, limit = _estimated_rows(plan), requirement.limit
+    left = undetermined(data, flags)[limit][law][rows]
+    lost = failed(data)[law][rows]
+    found = judge(requirement, flags[limit][law][rows], left, lost, plan.config.sampling, plan.sample.replicate[rows])
+    return {"law": plan.laws[law].name, **found, "value": limit_values(plan).get(limit)}
 
 
 def step_error(data: xr.Dataset) -> dict[str, Any]:

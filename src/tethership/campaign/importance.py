@@ -6,6 +6,7 @@ Saltelli et al., Computer Physics Communications 181 (2010) 259: first-order and
 B and A with one column of B (`sampling.saltelli_design`), as scipy computes them.
 """
 
+import warnings
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -81,8 +82,12 @@ def sobol_importance(names: tuple[str, ...], values: np.ndarray, output: np.ndar
     size = len(names)
     blocks = np.where(np.isfinite(output), output, np.nanmedian(output)).reshape(size + 2, -1)
     evaluated = {"f_A": blocks[:1], "f_B": blocks[1:2], "f_AB": blocks[2:, None, :]}
+    if np.ptp(blocks) == 0.0:
+        return list(rank_importance(names, values, output))
     indices: Any = scipy.stats.sobol_indices(func=evaluated, n=blocks.shape[1], rng=np.random.default_rng(seed))
-    ends = indices.bootstrap(confidence_level=0.95)
+    with warnings.catch_warnings():  # resamples without variance: their ends are NaN
+        warnings.simplefilter("ignore", RuntimeWarning)
+        ends = indices.bootstrap(confidence_level=0.95)
     ranks = {entry.name: entry for entry in rank_importance(names, values, output)}
     found = [
         ranks[name]._replace(

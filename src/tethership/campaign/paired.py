@@ -20,6 +20,8 @@ class PairedMetric(NamedTuple):
         Share of cases in which the second law's is lower [-].
     p_value : float
         Wilcoxon's signed-rank test of no difference.
+    cases : int
+        Cases that both have.
     """
 
     name: str
@@ -30,6 +32,7 @@ class PairedMetric(NamedTuple):
     high: float
     lower: float
     p_value: float
+    cases: int
 
 
 class PairedLimit(NamedTuple):
@@ -71,6 +74,7 @@ def paired_metric(name: str, first: np.ndarray, second: np.ndarray) -> PairedMet
         mean + reach,
         lower,
         p_value,
+        len(change),
     )
 
 

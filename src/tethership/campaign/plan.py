@@ -128,6 +128,7 @@ class Plan(NamedTuple):
         first = place * self.lanes
         values = self.values[law, first : first + self.lanes]
         chosen = np.random.default_rng([self.config.seed, number]).random(len(values)) < self.config.verified
+        chosen[0] |= number == 0 and self.config.verified > 0.0  # one at least, however few the flights
         return Batch(number, law, first, values, tuple(map(int, np.flatnonzero(chosen))))
 
     def digest(self) -> str:
@@ -159,6 +160,10 @@ def make_plan(name: str, changes: dict[str, Any] | None = None, scenario_changes
         document["changes"] = {**document.get("changes", {}), **scenario_changes}
         document["vary"] = {k: v for k, v in document.get("vary", {}).items() if k not in scenario_changes}
     config = validated(CampaignConfig, document, name)
+    if config.sampling == "grid" and "samples" in (changes or {}):
+        raise ConfigError(
+            f"{name}: a grid flies every combination of its levels; leave out --samples or change the levels"
+        )
     own = load_scenario(_beside(name, config.scenario), config.changes)
     scenario = own.changed({"control.layers": list(LAYERS)})  # a layer is off by its gains: see `layer_switches`
     _check_limits(config, name)

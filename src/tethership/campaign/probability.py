@@ -59,7 +59,8 @@ def estimate(exceeded: np.ndarray, sampling: str, replicate: np.ndarray, confide
         low, high = _from_scrambles(exceeded, replicate, confidence)
         method = "scrambled replicates" if low is not None else "none: all scrambles agree; use random draws"
         return Estimate(count, flights, share, low, high, confidence, method)
-    return Estimate(count, flights, share, None, None, confidence, f"none: sampling {sampling}")
+    method = "none: share of the grid's points" if sampling == "grid" else f"none: sampling {sampling}"
+    return Estimate(count, flights, share, None, None, confidence, method)
 
 
 def clopper_pearson1934(count: int, flights: int, confidence: float = 0.95) -> tuple[float, float]:

@@ -13,6 +13,9 @@ from tethership.campaign.schema import CampaignConfig
 from tethership.errors import ConfigError
 from tethership.scenario import Parameter, Scenario, check_values, find_parameter, list_parameters
 
+NEVER = 1e-9
+"""Probability of values beyond which a distribution is not looked at: six standard deviations of a normal one."""
+
 
 class Sample(NamedTuple):
     """What varies, case by case.
@@ -67,7 +70,7 @@ def draw(campaign: CampaignConfig, scenario: Scenario, origin: str) -> Sample:
             for i, (parameter, (name, spread)) in enumerate(zip(parameters, campaign.vary.items(), strict=True))
         ]
         values = np.stack(columns, axis=1)
-    _check_bounds(scenario, parameters, values, origin)
+    _check_bounds(scenario, parameters, _reached(campaign, parameters, values, origin), origin)
     return Sample(names, values, replicate)
 
 
@@ -158,6 +161,21 @@ def _correlated(campaign: CampaignConfig, probability: np.ndarray) -> np.ndarray
         normal = scipy.stats.norm.ppf(probability[:, places]) @ factor.T
         probability[:, places] = scipy.stats.norm.cdf(normal)
     return probability
+
+
+def _reached(campaign: CampaignConfig, parameters: list[Parameter], values: np.ndarray, origin: str) -> np.ndarray:
+    """Return the least and the largest values, two rows: of a grid its own, else what is all but never passed.
+
+    Bounds are checked against these and not against the draws, so that a file is right or wrong whatever its seed.
+    """
+    if campaign.sampling == "grid":
+        return np.stack([values.min(axis=0), values.max(axis=0)])
+    ends = np.array([NEVER, 1.0 - NEVER])
+    columns = [
+        _in_si(campaign, parameter, spread.quantile(ends), name, origin)
+        for parameter, (name, spread) in zip(parameters, campaign.vary.items(), strict=True)
+    ]
+    return np.stack(columns, axis=1)
 
 
 def _check_bounds(scenario: Scenario, parameters: list[Parameter], values: np.ndarray, origin: str) -> None:

@@ -30,6 +30,13 @@ class CorrelatedGroup(Table):
     names: Annotated[tuple[str, ...], Field(min_length=2)]
     correlation: tuple[tuple[float, ...], ...]
 
+    @field_validator("correlation", mode="before")
+    @classmethod
+    def _matrix(cls, given: Any) -> Any:
+        if not isinstance(given, list | tuple) or not all(isinstance(row, list | tuple) for row in given):
+            raise ValueError(f"it is {given!r}; give the whole matrix, e.g. [[1.0, 0.6], [0.6, 1.0]]")
+        return given
+
     @model_validator(mode="after")
     def _positive_definite(self) -> "CorrelatedGroup":
         count = len(self.names)

@@ -17,8 +17,31 @@ import zarr
 from tethership._version import __version__
 from tethership.campaign.plan import Batch, Plan
 from tethership.errors import ConfigError
+from tethership.simulation.batch import CODES
 
 RESULTS, MARKS, MANIFEST = "results.zarr", "finished", "campaign.json"
+
+UNITS = {
+    "outcome": "1",
+    "unbalanced": "1",
+    "docking_time": "s",
+    "flight_time": "s",
+    "tension_max": "N",
+    "tension_mean": "N",
+    "tension_largest": "N",
+    "tension_anchor": "N",
+    "ADC": "1/s",
+    "E": "1",
+    "theta_rms": "deg",
+    "roll_max": "deg",
+    "pitch_max": "deg",
+    "clearance_min": "m",
+    "rewind_rate_min": "m/s",
+    "seconds_above": "s",
+    "saturated_seconds": "s",
+    "misalignment_jumps": "1",
+}
+"""Units of what a campaign keeps; without one of these its results are not whole."""
 
 
 class CampaignStore:
@@ -165,6 +188,19 @@ def open_results(folder: str | Path) -> xr.Dataset:
     manifest = read_manifest(Path(folder))
     if manifest is None:
         raise ConfigError(f"{folder} holds no campaign; give the folder that `tethership campaign` wrote")
-    with xr.open_zarr(Path(folder) / RESULTS, consolidated=False) as data:
-        loaded = data.load()
-    return loaded.assign_coords(law=manifest["laws"], quantity=loaded.attrs["inputs"])
+    try:
+        with xr.open_zarr(Path(folder) / RESULTS, consolidated=False) as data:
+            loaded = data.load()
+    except (OSError, ValueError, KeyError) as error:
+        raise ConfigError(f"cannot read {Path(folder) / RESULTS}: {error}; fly it again into another --out") from error
+    missing = [name for name in UNITS if name not in loaded]
+    if missing:
+        raise ConfigError(f"{Path(folder) / RESULTS} lacks {', '.join(missing)}; fly it again into another --out")
+    for name, unit in UNITS.items():
+        loaded[name].attrs["units"] = unit
+    loaded["outcome"].attrs |= {
+        "flag_meanings": " ".join(code.name for code in CODES),
+        "flag_values": range(len(CODES)),
+    }
+    places = {"law": manifest["laws"], "case": np.arange(loaded.sizes["case"]), "quantity": loaded.attrs["inputs"]}
+    return loaded.assign_coords(places)

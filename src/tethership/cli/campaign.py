@@ -10,6 +10,7 @@ import typer
 
 from tethership._version import __version__
 from tethership.cli.common import (
+    NO_ANSWER,
     FormulationOption,
     JsonOption,
     SetOption,
@@ -55,7 +56,7 @@ def campaign(
     csv: CsvOption = None,
     json: JsonOption = False,
 ) -> None:
-    """Fly a manoeuvre many times over what may vary, and say how often each limit is passed.
+    """Fly a manoeuvre many times over what may vary, and say how often each limit is exceeded.
 
     Results are kept batch by batch: interrupted at any moment, the same command goes on. Writes results.zarr,
     report.html, tables as CSV and the worst flights with their histories into --out.
@@ -81,6 +82,10 @@ def campaign(
         print_json(result)
     else:
         _print(result)
+    if result["failed"] == result["runs"]:
+        most = max(result["outcomes"], key=lambda name: result["outcomes"][name])
+        typer.echo(f"tethership: no flight has a result ({most}): nothing can be said of the odds", err=True)
+        raise typer.Exit(NO_ANSWER)
 
 
 def _counted(report: Report) -> Callable[[int, int], None]:
@@ -119,6 +124,7 @@ def _concluded(found: Any, folder: Path) -> dict[str, Any]:
         "flown": found.flown,
         **answers,
         "exceedance": first["exceedance"],
+        "outcomes": first["outcomes"],
         "files": [*map(str, written), str(folder / "results.zarr")],
     }
 
@@ -145,7 +151,7 @@ def _shown(result: dict[str, Any]) -> list[tuple[str, list[Row]]]:
             Row(f"{limit.replace('_', ' ')}, {name}", row["probability"], "", ".2%", _interval(row))
             for limit, row in law["exceedance"].items()
         ]
-        found.append((f"{name}: probability of passing each limit, {100 * result['confidence']:g} % interval", rows))
+        found.append((f"{name}: probability of exceeding each limit, {100 * result['confidence']:g} % interval", rows))
     rows = [Row(row["requirement"], row["verdict"], row["law"], "", _interval(row)) for row in result["compliance"]]
     return [*found, ("requirements", rows)] if rows else found
 

@@ -8,14 +8,25 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from tethership.campaign.answers import failed, outcomes
 from tethership.campaign.plan import Plan
 from tethership.campaign.work import COMPARED
-from tethership.simulation.batch import CODES
 
 
 def write_exceedance(folder: Path, answers: dict[str, Any]) -> Path:
     """Write the probability of passing each limit under each law; returns where."""
-    keys = ("exceeding", "flights", "probability", "low", "high", "confidence", "method")
+    keys = (
+        "value",
+        "unit",
+        "exceeding",
+        "undetermined",
+        "flights",
+        "probability",
+        "low",
+        "high",
+        "confidence",
+        "method",
+    )
     rows = (
         [law, limit, *(row[key] for key in keys)]
         for law, of in answers["laws"].items()
@@ -26,19 +37,26 @@ def write_exceedance(folder: Path, answers: dict[str, Any]) -> Path:
 
 def write_flights(folder: Path, plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray]) -> Path:
     """Write every flight, a row each: what was drawn [SI], how it ended, its metrics, limits passed; returns where."""
-    head = ["law", "case", *plan.sample.names, "outcome", *COMPARED, *flags]
+    head = ["law", "case", *plan.sample.names, "outcome", "failed", *COMPARED, *flags]
     return _written(folder / "flights.csv", head, _flights(plan, data, flags))
 
 
 def _flights(plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray]) -> Iterator[list[Any]]:
     """Yield a row for each flight."""
-    outcome = data["outcome"].values
+    ended, lost = outcomes(data), failed(data)
     metrics = [data[name].values for name in COMPARED]
-    for law, case in np.ndindex(outcome.shape):
-        ended = CODES[int(outcome[law, case])].name
+    for law, case in np.ndindex(ended.shape):
         numbers = (metric[law, case] for metric in metrics)
         passed = (int(of[law, case]) for of in flags.values())
-        yield [plan.laws[law].name, case, *plan.sample.values[case], ended, *numbers, *passed]
+        yield [
+            plan.laws[law].name,
+            case,
+            *plan.sample.values[case],
+            ended[law, case],
+            int(lost[law, case]),
+            *numbers,
+            *passed,
+        ]
 
 
 def _written(path: Path, head: list[str], rows: Iterable[list[Any]]) -> Path:

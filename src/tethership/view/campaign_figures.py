@@ -26,7 +26,7 @@ def new_axes(axes: Axes | None, height: float) -> Axes:
 
 
 def plot_limits(found: Mapping[str, Mapping[str, Mapping[str, Any]]], confidence: float, axes: Axes | None) -> Axes:
-    """Draw the probability of passing each limit with its interval.
+    """Draw the probability of exceeding each limit with its interval.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def plot_limits(found: Mapping[str, Mapping[str, Mapping[str, Any]]], confidence
     axes.set_yticks(np.arange(len(limits)), [limit.replace("_", " ") for limit in limits], fontsize=style.FONT)
     axes.invert_yaxis()
     axes.set_xlim(-0.02, 1.02)
-    axes.set_xlabel(f"probability of passing the limit, {100 * confidence:g} % interval [-]")
+    axes.set_xlabel(f"probability of exceeding the limit, {100 * confidence:g} % interval [-]")
     axes.grid(alpha=0.25, axis="x")
     axes.legend(frameon=False, fontsize=style.FONT, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return axes

@@ -27,7 +27,7 @@ def plot_campaign(campaign: Campaign, axes: Axes | None = None, kind: str = "lim
     axes : Axes, optional
         Draw there; new ones if not given.
     kind : str
-        `limits`: probability of passing each limit, with intervals. `peaks`: share of flights above a tension.
+        `limits`: probability of exceeding each limit, with intervals. `peaks`: share of flights above a tension.
         `times`: histogram of the time to dock. `convergence`: how one law's probabilities settle (independent draws
         only). `importance`: what one law's peak tension hangs on.
     law : str, optional

@@ -15,6 +15,7 @@ from tethership.errors import ConfigError
 from tethership.view import campaign_figures as figures
 from tethership.view.campaign_csv import write_exceedance, write_flights
 from tethership.view.campaign_plot import settling, watched
+from tethership.view.campaign_setting import compliance_section, flown_section, interval
 from tethership.view.report import Figure, Section, Table, write_report
 from tethership.view.study_tables import NAMES
 
@@ -58,8 +59,8 @@ def _written(
     (folder / "figures").mkdir(exist_ok=True)
     flags = exceeded(plan, data)
     sections = [
-        _varied(plan),
-        _compliance(answers),
+        flown_section(plan),
+        compliance_section(answers),
         _exceedance(folder, plan, data, answers, flags),
         _pairs(answers),
         _tails(folder, data, answers),
@@ -81,75 +82,61 @@ def _abstract(plan: Plan, answers: dict[str, Any]) -> list[str]:
     """Return the summary."""
     verdicts = [row["verdict"] for row in answers["compliance"]]
     lines = [
-        f"{plan.config.description}. {answers['cases']} cases of `{plan.config.scenario}`, formulation "
+        f"{(plan.config.description or plan.config.title).rstrip('.')}. {answers['cases']} cases of "
+        f"`{plan.config.scenario}`, formulation "
         f"`{plan.scenario.formulation}`, sampling `{answers['sampling']}`, seed {plan.config.seed}, flown under "
         f"{len(plan.laws)} law{'s' * (len(plan.laws) > 1)}: {answers['runs']} flights, {answers['failed']} failed. "
-        "A flight that failed counts as passing every limit."
+        "A flight without a result (no equilibrium at the start, diverged) counts as exceeding every limit; a broken "
+        "cable or a time-out is a result."
     ]
     if verdicts:
-        counted = ", ".join(f"**{verdicts.count(word)}** {word}" for word in ("met", "not met", "open"))
-        lines.append(f"Requirements: {counted}. Open means that the interval holds the allowed probability: fly more.")
+        words = ("met", "not met", "undecided", "no verdict")
+        counted = ", ".join(f"**{verdicts.count(word)}** {word}" for word in words if word in verdicts)
+        lines.append(f"Requirements: {counted}.")
+    if answers["failed"]:
+        lines.append(f"**{answers['failed']} of {answers['runs']} flights have no result**: {_why(answers)}.")
     return lines
 
 
-def _varied(plan: Plan) -> Section:
-    """Return what varies."""
-    cells = []
-    for i, (name, spread) in enumerate(plan.config.vary.items()):
-        shown = _numbers(spread)
-        unit = "× the scenario's" if spread.relative else spread.unit
-        column = plan.sample.values[:, i]
-        cells.append([f"`{name}`", spread.distribution, shown, unit, float(column.min()), float(column.max())])
-    heads = ["quantity", "distribution", "numbers", "unit", "least drawn [SI]", "largest drawn [SI]"]
-    return Section(
-        "What varies", ["All cases are drawn before the first is flown."], [Table("Distributions.", heads, cells)]
-    )
+EARLY = (
+    "Ended early: flights that did not dock and had not exceeded the limit by then (a broken cable, a time-out); what "
+    "they would have done later nobody saw, and the probability counts them as not exceeding."
+)
 
 
-def _numbers(spread: Any) -> str:
-    """Return the numbers of a distribution in words; a bound that is none is left out."""
-    numbers = spread.model_dump(exclude_none=True, exclude={"distribution", "unit", "relative"})
-    given = {key: value for key, value in numbers.items() if not (isinstance(value, float) and np.isinf(value))}
-    words = (f"{key} {value:g}" if isinstance(value, float | int) else f"{key} {value}" for key, value in given.items())
-    return ", ".join(words)
-
-
-def _compliance(answers: dict[str, Any]) -> Section | None:
-    """Return the requirements with their verdicts."""
-    if not answers["compliance"]:
-        return None
-    cells = [
-        [r["requirement"], r["law"], r["allowed"], r["probability"], _interval(r), r["confidence"], r["verdict"]]
-        for r in answers["compliance"]
-    ]
-    heads = ["requirement", "law", "allowed", "found", "interval", "confidence", "verdict"]
-    words = [
-        "**Met** where the whole interval is at or below what is allowed, **not met** where it is above, else **open**."
-    ]
-    return Section("Compliance", words, [Table("Requirements.", heads, cells, verdict_column=6)])
-
-
-def _interval(row: Mapping[str, Any]) -> str | None:
-    return None if row["low"] is None else f"{row['low']:.4g} … {row['high']:.4g}"
+def _why(answers: dict[str, Any]) -> str:
+    """Return how flights without a result ended."""
+    names = ("no_equilibrium", "diverged")
+    counted = {name: sum(of["outcomes"].get(name, 0) for of in answers["laws"].values()) for name in names}
+    return ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in counted.items() if count)
 
 
 def _exceedance(
     folder: Path, plan: Plan, data: xr.Dataset, answers: dict[str, Any], flags: dict[str, np.ndarray]
 ) -> Section:
-    """Return the probability of passing each limit, with pictures."""
+    """Return the probability of exceeding each limit, with pictures."""
     cells = []
     for law, of in answers["laws"].items():
         cells += [
-            [limit.replace("_", " "), law, row["exceeding"], row["probability"], _interval(row), row["method"]]
+            [
+                f"{limit.replace('_', ' ')} {row['value']:g} {row['unit']}",
+                law,
+                row["exceeding"],
+                row["undetermined"],
+                row["flights"],
+                row["probability"],
+                interval(row),
+                row["method"],
+            ]
             for limit, row in of["exceedance"].items()
         ]
-    heads = ["limit", "law", "flights", "probability", "interval", "method"]
+    heads = ["limit", "law", "exceeding", "ended early", "of", "probability", "interval", "method"]
     times = [
         [law, *(of["docking_time"].get(key) for key in ("count", "p5", "p50", "p95"))]
         for law, of in answers["laws"].items()
     ]
     shown = [
-        Table("Probability of passing each limit.", heads, cells),
+        Table("Probability of exceeding each limit.", heads, cells, EARLY),
         Table("Time to dock of those that do [s].", ["law", "docked", "5 %", "median", "95 %"], times),
     ]
     drawn = _limit_figures(folder, plan, data, answers, flags)
@@ -174,9 +161,9 @@ def _limit_figures(
     confidence = answers["confidence"]
     rows = {name: of["exceedance"] for name, of in answers["laws"].items()}
     drawn = [
-        _figure(folder, "limits", figures.plot_limits(rows, confidence, None), "Probability of passing each limit."),
+        _figure(folder, "limits", figures.plot_limits(rows, confidence, None), "Probability of exceeding each limit."),
         _figure(
-            folder, "peaks", figures.plot_peaks(peaks, watched(plan)), "Share of flights whose peak passes a tension."
+            folder, "peaks", figures.plot_peaks(peaks, watched(plan)), "Share of flights whose peak exceeds a tension."
         ),
         _figure(folder, "times", figures.plot_times(times, plan.config.limits.time), "Time to dock."),
     ]
@@ -185,6 +172,14 @@ def _limit_figures(
         text = f"How the probabilities of `{laws[0]}` settle with the number of flights."
         drawn.append(_figure(folder, "convergence", figures.plot_convergence(paths, confidence), text))
     return drawn
+
+
+PAIRED = (
+    "Every law flew the same cases, so differences are taken case by case, over the cases that both have (docking "
+    "time: that docked under both). A cable that breaks cuts its peak off, which makes differences of the peak look "
+    "smaller. p-values are of single tests of independent draws, not corrected for their number; other samplings have "
+    "none."
+)
 
 
 def _pairs(answers: dict[str, Any]) -> Section | None:
@@ -199,8 +194,9 @@ def _pairs(answers: dict[str, Any]) -> Section | None:
                 m["first"],
                 m["second"],
                 m["difference"],
-                f"{m['low']:.4g} … {m['high']:.4g}",
+                interval(m),
                 m["lower"],
+                m["cases"],
                 m["p_value"],
             ]
             for m in pair["metrics"]
@@ -212,6 +208,7 @@ def _pairs(answers: dict[str, Any]) -> Section | None:
             "mean difference",
             "95 % interval",
             "share lower",
+            "cases",
             "Wilcoxon p",
         ]
         shown.append(Table(f"{pair['second']} against {pair['first']}, case by case.", heads, cells))
@@ -220,8 +217,8 @@ def _pairs(answers: dict[str, Any]) -> Section | None:
             for e in pair["limits"]
         ]
         heads = ["limit", f"only {pair['first']}", f"only {pair['second']}", "both", "McNemar p"]
-        shown.append(Table(f"Cases that pass a limit under {pair['first']} and {pair['second']}.", heads, cells))
-    return Section("Laws compared", ["Every law flew the same cases, so differences are taken case by case."], shown)
+        shown.append(Table(f"Cases that exceed a limit under {pair['first']} and {pair['second']}.", heads, cells))
+    return Section("Laws compared", [PAIRED], shown)
 
 
 def _tails(folder: Path, data: xr.Dataset, answers: dict[str, Any]) -> Section | None:
@@ -251,7 +248,8 @@ def _tails(folder: Path, data: xr.Dataset, answers: dict[str, Any]) -> Section |
         picture = figures.plot_tail(data["tension_max"].values[i], tail)
         drawn.append(_figure(folder, f"tail_{law}", picture, f"Tail of the peak tension, {law}."))
     if not shown:
-        return None
+        words = "No tail is fitted: it takes independent draws and some 300 flights of a law whose cable holds."
+        return Section("Extremes", [words])
     words = ["Levels beyond the flights are extrapolated; their interval is of the fit alone, not of the model."]
     return Section("Extremes", words, shown, drawn)
 
@@ -261,6 +259,8 @@ def _importance(folder: Path, answers: dict[str, Any]) -> Section:
     shown, drawn = [], []
     for law, of in answers["laws"].items():
         entries = of["importance"]
+        if not entries:
+            continue
         cells = [[f"`{e['name']}`", e["rank_correlation"], e["p_value"], e["first"], e["total"]] for e in entries]
         heads = ["quantity", "rank correlation", "p", "Sobol first order", "Sobol total"]
         shown.append(Table(f"What the peak tension hangs on, {law}.", heads, cells))
@@ -284,7 +284,10 @@ def _checks(answers: dict[str, Any]) -> Section:
         shown.append(Table("Flights kept with their histories.", ["law", "case", "why", "file"], kept))
     outcomes = [[law, name, count] for law, of in answers["laws"].items() for name, count in of["outcomes"].items()]
     shown.append(Table("How the flights ended.", ["law", "outcome", "flights"], outcomes))
-    words = [f"{error['flights']} flights, drawn at random, were flown again adaptively to tight tolerance."]
+    words = [
+        f"{error['flights']} flights, drawn at random, were flown again adaptively to tight tolerance. What the steps "
+        "change is in no interval above; a flight close to a limit may change sides."
+    ]
     return Section("Checks", words, shown)
 
 

@@ -18,6 +18,8 @@ VERDICTS: Mapping[str, str] = {
     "inside": "good",
     "near": "fair",
     "open": "fair",
+    "undecided": "fair",
+    "no verdict": "fair",
     "differs": "bad",
     "does not hold": "bad",
     "not met": "bad",
