@@ -18,7 +18,7 @@ import tethership as ts
 from tethership.campaign.answers import answer, exceeded, failed, undetermined
 from tethership.campaign.execute import fly_campaign, in_this_process
 from tethership.campaign.plan import make_plan
-from tethership.campaign.store import CampaignStore, open_results
+from tethership.campaign.store import CampaignStore, open_results, whole_results
 from tethership.campaign.work import fly_one
 from tethership.errors import ConfigError
 from tethership.scenario.load import packaged_text
@@ -350,4 +350,4 @@ def test_a_store_that_lacks_a_number_is_told(whole, tmp_path):
     copy = shutil.copytree(folder, tmp_path / "copy")
     shutil.rmtree(copy / "results.zarr" / "tension_max")
     with pytest.raises(ConfigError, match="lacks tension_max"):
-        open_results(copy)
+        whole_results(copy)

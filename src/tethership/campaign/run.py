@@ -11,7 +11,7 @@ from tethership.campaign.answers import answer
 from tethership.campaign.execute import Hands, Progress, fly_campaign, in_processes, in_this_process, on_cluster
 from tethership.campaign.kept import keep_flights
 from tethership.campaign.plan import Plan, make_plan
-from tethership.campaign.store import CampaignStore, open_results
+from tethership.campaign.store import CampaignStore, whole_results
 from tethership.errors import ConfigError
 
 
@@ -80,7 +80,7 @@ def run_campaign(
     store = CampaignStore(Path(folder), plan)
     with _hands(workers, scheduler)() as hands:
         flown = fly_campaign(plan, store, hands, progress)
-    data = open_results(folder)
+    data = whole_results(folder)
     answers = answer(plan, data, confidence)
     answers["kept"] = keep_flights(plan, data, Path(folder))
     return Campaign(plan, data, answers, flown)

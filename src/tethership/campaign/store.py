@@ -41,7 +41,7 @@ UNITS = {
     "saturated_seconds": "s",
     "misalignment_jumps": "1",
 }
-"""Units of what a campaign keeps; without one of these its results are not whole."""
+"""Units of what a campaign keeps; without one of these finished results are not whole."""
 
 
 class CampaignStore:
@@ -193,14 +193,25 @@ def open_results(folder: str | Path) -> xr.Dataset:
             loaded = data.load()
     except (OSError, ValueError, KeyError) as error:
         raise ConfigError(f"cannot read {Path(folder) / RESULTS}: {error}; fly it again into another --out") from error
-    missing = [name for name in UNITS if name not in loaded]
-    if missing:
-        raise ConfigError(f"{Path(folder) / RESULTS} lacks {', '.join(missing)}; fly it again into another --out")
-    for name, unit in UNITS.items():
-        loaded[name].attrs["units"] = unit
-    loaded["outcome"].attrs |= {
-        "flag_meanings": " ".join(code.name for code in CODES),
-        "flag_values": range(len(CODES)),
-    }
+    for name in set(UNITS) & set(loaded):
+        loaded[name].attrs["units"] = UNITS[name]
+    if "outcome" in loaded:
+        loaded["outcome"].attrs["flag_meanings"] = " ".join(code.name for code in CODES)
+        loaded["outcome"].attrs["flag_values"] = list(range(len(CODES)))
     places = {"law": manifest["laws"], "case": np.arange(loaded.sizes["case"]), "quantity": loaded.attrs["inputs"]}
     return loaded.assign_coords(places)
+
+
+def whole_results(folder: str | Path) -> xr.Dataset:
+    """Return a finished campaign's results, as `open_results`.
+
+    Raises
+    ------
+    ConfigError
+        As `open_results`, or something that every campaign keeps is not there.
+    """
+    data = open_results(folder)
+    missing = [name for name in UNITS if name not in data]
+    if missing:
+        raise ConfigError(f"{Path(folder) / RESULTS} lacks {', '.join(missing)}; fly it again into another --out")
+    return data
