@@ -18,7 +18,6 @@ import tethership as ts
 from tethership.errors import SolveError
 from tethership.scenario import VehicleConfig
 from tethership.view import plot_docking
-from tethership.view.docking import compass
 from tethership.view.histories import spread
 from tethership.view.projection import FROM_EAST, FROM_NORTH, FROM_TOP
 from tethership.view.ship import ship_outlines, ship_shape, silhouette

@@ -1,0 +1,172 @@
+// The page: reads the flights, builds stages, plots and controls, and shows a time.
+
+const FARTHEST_FIXED = 5; // flights longer than so many ships are followed by the camera
+
+const describe = (flights) => {
+  document.getElementById("title").textContent = flights[0].title;
+  document.getElementById("words").textContent =
+    flights.length > 1 ? "two flights, in step" : `${flights[0].words} · ${flights[0].outcome} after ${flights[0].duration.toFixed(1)} s`;
+};
+
+const makeStageBox = (flight, several) => {
+  const box = document.getElementById("stage").content.firstElementChild.cloneNode(true);
+  document.getElementById("stages").append(box);
+  const caption = box.querySelector("figcaption");
+  caption.hidden = !several;
+  caption.innerHTML = "<b></b> <span></span>";
+  caption.querySelector("b").textContent = flight.name;
+  caption.querySelector("span").textContent = `${flight.words} · ${flight.outcome} after ${flight.duration.toFixed(1)} s`;
+  const note = box.querySelector(".note");
+  const notes = [];
+  if (flight.missing.length) notes.push(`not in this file: ${flight.missing.join(", ")}`);
+  note.textContent = notes.join(" · ");
+  return box;
+};
+
+const shareAmong = (flights, tracks, moved) => {
+  const points = flights.flatMap((flight, i) => flightPoints(flight, tracks[i]));
+  const box = new THREE.Box3().setFromPoints(points);
+  const length = Math.max(...flights.map((flight) => flight.ship.length));
+  const strongest = Math.max(...tracks.map(strongestWind));
+  const follow = box.getSize(new THREE.Vector3()).length() > FARTHEST_FIXED * length;
+  if (follow) {
+    const start = flights.flatMap((flight, i) => shipPoints(flight, tracks[i].at(0)));
+    box.setFromPoints(start).expandByScalar(length);
+    for (const flight of flights) for (const cable of flight.cables) box.expandByPoint(new THREE.Vector3(...cable.anchor));
+  }
+  return {
+    points,
+    box,
+    follow,
+    scale: new TensionScale(flights[0].limits),
+    perSpeed: strongest > 0 ? (LONGEST_WIND * length) / strongest : 0,
+    moved,
+  };
+};
+
+class Page {
+  constructor() {
+    const { flights } = DATA;
+    this.tracks = flights.map((flight) => new Tracks(flight.tracks));
+    this.clock = new Clock(Math.max(...this.tracks.map((tracks) => tracks.end), 1e-3));
+    this.dirty = true;
+    this.copying = false;
+    describe(flights);
+    const shared = shareAmong(flights, this.tracks, (stage, rig) => this.moved(stage, rig));
+    fillKey(document.getElementById("key"), flights, shared.scale);
+    const boxes = flights.map((flight) => makeStageBox(flight, flights.length > 1));
+    document.body.classList.toggle("two", flights.length > 1);
+    this.stages = [];
+    flights.forEach((flight, i) => this.stages.push(new Stage(boxes[i].querySelector(".view"), flight, this.tracks[i], shared)));
+    this.readouts = flights.map((flight, i) => new Readout(boxes[i], flight, this.tracks[i], shared.scale));
+    this.plots = new Plots(document.getElementById("plots"), flights, this.tracks, this.clock);
+    this.controls = new Controls(this.clock, (name) => this.chooseCamera(name));
+    this.clock.listen(() => {
+      this.dirty = true;
+    });
+    new ResizeObserver(() => this.resize()).observe(document.getElementById("stages"));
+    this.placeAll();
+    this.resize();
+    this.chooseCamera("three-quarter");
+    this.last = null;
+    requestAnimationFrame((now) => this.frame(now));
+  }
+
+  resize() {
+    for (const stage of this.stages) stage.resize();
+    this.plots.resize();
+    this.dirty = true;
+  }
+
+  chooseCamera(name) {
+    for (const stage of this.stages) stage.rig.choose(name);
+    this.dirty = true;
+  }
+
+  // A reader has turned one scene: turn the other.
+  moved(stage, rig) {
+    this.dirty = true;
+    if (this.copying || rig.name !== "orbit" || !this.stages) return;
+    this.copying = true;
+    for (const other of this.stages) if (other !== stage) other.rig.copy(rig);
+    this.copying = false;
+  }
+
+  placeAll() {
+    for (const stage of this.stages) stage.place(this.clock.time);
+  }
+
+  frame(now) {
+    const passed = this.last === null ? 0 : Math.min((now - this.last) / 1000, 0.25);
+    this.last = now;
+    this.clock.pass(passed);
+    if (this.dirty) this.show();
+    requestAnimationFrame((next) => this.frame(next));
+  }
+
+  show() {
+    this.dirty = false;
+    this.placeAll();
+    this.stages.forEach((stage, i) => {
+      stage.render();
+      this.readouts[i].place(stage.now);
+      const ended = this.clock.time > this.tracks[i].end + 1e-6;
+      stage.parent.classList.toggle("ended", ended);
+    });
+    this.plots.place(this.clock.time);
+    this.plots.tell(this.stages.map((stage) => stage.now));
+    this.controls.place(this.stages[0].rig.name);
+    this.dirty = false;
+  }
+
+  // What is seen, for tests: read from the scene and the plots themselves.
+  state() {
+    return {
+      time: this.clock.time,
+      end: this.clock.end,
+      playing: this.clock.playing,
+      speed: this.clock.speed,
+      camera: this.stages[0].rig.name,
+      frames: this.stages.map((stage) => stage.frames),
+      flights: this.stages.map(stageState),
+      plots: this.plots.panels.map((panel) => ({ title: panel.title, time: panel.plot.posToVal(panel.left, "x"), shown: panel.entries.map(({ one, value }) => [one.label, value.textContent]) })),
+    };
+  }
+}
+
+const stageState = (stage) => {
+  const { ship, cables, wind, rig, flight } = stage;
+  stage.scene.updateMatrixWorld(true);
+  const world = ship.group.localToWorld(new THREE.Vector3(...flight.ship.nose));
+  const list = (vector) => vector.toArray();
+  return {
+    name: flight.name,
+    centre: list(ship.point(flight.ship.axis)),
+    nose: list(toGround(world)),
+    nose_in_scene: list(world),
+    tension: stage.now.values("tension"),
+    cable_length: stage.now.values("cable_length"),
+    thrusts: ship.arrows.map((arrow) => ({ from: list(ship.point(arrow.from)), to: list(ship.point(arrow.to)), shown: arrow.group.visible })),
+    cables: cables.ends.map(([anchor, end], i) => ({ anchor, end, colour: cables.colours[i] })),
+    wind: { from: list(wind.mean.from), to: list(wind.mean.to) },
+    gust: { from: list(wind.gust.from), to: list(wind.gust.to), shown: wind.gust.group.visible },
+    camera: { position: list(toGround(rig.camera.position)), target: list(toGround(rig.controls.target)) },
+    nose_on_screen: list(toScene(ship.point(flight.ship.nose)).project(rig.camera)),
+    readout: Array.from(stage.parent.parentElement.querySelectorAll(".readout tbody tr"), (row) => row.innerText.trim()),
+  };
+};
+
+const start = () => {
+  try {
+    const page = new Page();
+    window.tethership = Object.freeze({ state: () => page.state() });
+  } catch (error) {
+    const message = document.createElement("p");
+    message.id = "failed";
+    message.textContent = `This page cannot be shown: ${error.message}. It needs a browser with WebGL 2.`;
+    document.body.replaceChildren(message);
+    throw error;
+  }
+};
+
+start();
