@@ -4,12 +4,13 @@ const CAMERAS = [
   { name: "north", title: "from north", from: [1, 0, -0.07] },
   { name: "east", title: "from east", from: [0, 1, -0.07] },
   { name: "top", title: "from above, north up", from: [-1e-4, 0, -1] },
-  { name: "three-quarter", title: "from east-northeast, above", from: [0.62, 1, -0.42] },
+  { name: "three-quarter", button: "¾ view", title: "from east-northeast, above", from: [0.62, 1, -0.42] },
   { name: "chase", title: "behind the ship", from: null },
 ];
 
 const FIELD_OF_VIEW = 28; // degrees, upright
-const MARGIN = 1.06;
+const MARGIN = 1.12;
+const BEHIND = [-2.0, 0.55, 0.5]; // of the eye of a chase: ahead, to starboard, up, over the ship's length
 
 class CameraRig {
   // `points` are to be seen, ground axes; `reach` is the ship's length; `follow` says that the flight is too long.
@@ -70,9 +71,11 @@ class CameraRig {
     this.centre.copy(centre);
     if (this.name === "chase") {
       const ahead = NORTH.clone().applyQuaternion(rotation).setZ(0).normalize();
-      const eye = centre.clone().addScaledVector(ahead, -2.1 * this.reach).addScaledVector(UP, 0.62 * this.reach);
-      this.camera.position.copy(toScene(eye));
-      this.controls.target.copy(toScene(centre.clone().addScaledVector(ahead, 0.45 * this.reach)));
+      const [forward, aside, above] = BEHIND.map((part) => part * this.reach * Math.max(1, 1.1 / this.camera.aspect));
+      const starboard = UP.clone().negate().cross(ahead);
+      const eye = centre.clone().addScaledVector(ahead, forward).addScaledVector(starboard, aside);
+      this.camera.position.copy(toScene(eye.addScaledVector(UP, above)));
+      this.controls.target.copy(toScene(centre.clone().addScaledVector(ahead, 0.1 * this.reach)));
       this.controls.update();
     } else if (this.follow) {
       this.camera.position.add(moved);

@@ -14,7 +14,7 @@ const SCENE_COLOURS = {
   staff: "#8a8272",
 };
 
-const TENSION_COLOURS = ["#9cc9e8", "#0072b2", "#e69f00", "#d55e00", "#7a0019"];
+const TENSION_COLOURS = ["#6aaed6", "#0072b2", "#e69f00", "#d55e00", "#7a0019"];
 
 // Colours of tension: the middle ones at the watched limits, the first at a thirtieth of the lowest limit; in between
 // by the logarithm of the tension.

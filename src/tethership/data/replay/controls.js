@@ -18,7 +18,7 @@ class Controls {
     CAMERAS.forEach((camera, i) => {
       const button = document.createElement("button");
       button.type = "button";
-      button.textContent = camera.name;
+      button.textContent = camera.button || camera.name;
       button.title = `${camera.title} (key ${i + 1})`;
       button.dataset.camera = camera.name;
       button.addEventListener("click", () => chooseCamera(camera.name));

@@ -6,8 +6,8 @@ const niceStep = (wanted) => {
 };
 
 class Ground {
-  // `box` holds the flight, ground axes; `level` is the down coordinate of the ground, `reach` how far it goes [m].
-  constructor(box, level, place, labels) {
+  // `box` holds the flight, ground axes; `level` is the down coordinate of the ground, `highest` the altitude to mark [m].
+  constructor(box, level, highest, place, labels) {
     const size = box.getSize(new THREE.Vector3());
     this.level = level;
     this.step = niceStep(Math.max(size.x, size.y, size.z) / 12);
@@ -27,7 +27,7 @@ class Ground {
     plane.renderOrder = -1;
     this.tiles = new THREE.Group();
     this.tiles.add(plane, this.grid());
-    this.group.add(this.tiles, this.staff(box, place, labels));
+    this.group.add(this.tiles, this.staff(box, highest, place, labels));
     this.foot = this.segments([0, 0, 0, 0, 0, 1], SCENE_COLOURS.staff);
     this.group.add(this.foot);
     this.footLabel = labels.add("", "foot");
@@ -55,10 +55,10 @@ class Ground {
   }
 
   // A staff with marks of altitude above the ground.
-  staff(box, place, labels) {
-    const top = this.level - box.min.z;
-    const points = [place.x, place.y, this.level, place.x, place.y, box.min.z];
-    const step = niceStep(Math.max(top, 1e-3) / 5);
+  staff(box, highest, place, labels) {
+    const step = niceStep(Math.max(highest, 1e-3) / 5);
+    const top = step * Math.ceil(highest / step);
+    const points = [place.x, place.y, this.level, place.x, place.y, this.level - top];
     const tick = 0.006 * box.getSize(new THREE.Vector3()).length();
     this.marks = [];
     for (let altitude = step; altitude <= top * 1.0001; altitude += step) {
@@ -76,7 +76,7 @@ class Ground {
   follow(centre) {
     const snapped = (value) => Math.round(value / this.step) * this.step;
     this.tiles.position.set(snapped(centre.x), snapped(centre.y), this.level);
-    this.northLabel.point.set(centre.x + 0.5 * this.size.x + 1.5 * this.step, centre.y, this.level);
+    this.northLabel.point.set(centre.x + 0.5 * this.size.x + 0.3 * this.step, centre.y, this.level);
   }
 
   place(centre, steep) {

@@ -3,31 +3,43 @@
 const FARTHEST_FIXED = 5; // flights longer than so many ships are followed by the camera
 
 const describe = (flights) => {
-  document.getElementById("title").textContent = flights[0].title;
-  document.getElementById("words").textContent =
-    flights.length > 1 ? "two flights, in step" : `${flights[0].words} · ${flights[0].outcome} after ${flights[0].duration.toFixed(1)} s`;
+  const same = flights[0].words.filter((part) => flights.every((flight) => flight.words.includes(part)));
+  const words = flights.length > 1 ? same : [...same, howItEnded(flights[0])];
+  document.getElementById("title").textContent = [...new Set(flights.map((flight) => flight.title))].join(" | ");
+  document.getElementById("words").textContent = words.join(" · ");
+  return same;
 };
 
-const makeStageBox = (flight, several) => {
-  const box = document.getElementById("stage").content.firstElementChild.cloneNode(true);
-  document.getElementById("stages").append(box);
-  const caption = box.querySelector("figcaption");
-  caption.hidden = !several;
-  caption.innerHTML = "<b></b> <span></span>";
-  caption.querySelector("b").textContent = flight.name;
-  caption.querySelector("span").textContent = `${flight.words} · ${flight.outcome} after ${flight.duration.toFixed(1)} s`;
-  const note = box.querySelector(".note");
-  const notes = [];
-  if (flight.missing.length) notes.push(`not in this file: ${flight.missing.join(", ")}`);
-  note.textContent = notes.join(" · ");
-  return box;
-};
+const howItEnded = (flight) => `${flight.outcome} after ${flight.duration.toFixed(1)} s`;
+
+const notesOf = (flight) => [
+  ...(flight.missing.length ? [`not in this file: ${flight.missing.join(", ")}`] : []),
+  ...(flight.ground_modelled ? [] : ["no ground in this scenario: the plane is at the anchor’s level"]),
+];
+
+// The boxes of the flights; what is the same of all is not said twice.
+const makeStageBoxes = (flights, same) =>
+  flights.map((flight, i) => {
+    const box = document.getElementById("stage").content.firstElementChild.cloneNode(true);
+    document.getElementById("stages").append(box);
+    const caption = box.querySelector("figcaption");
+    caption.hidden = flights.length === 1;
+    caption.querySelector("b").textContent = `${LETTERS[i]} · ${flight.name}`;
+    const own = [...flight.words.filter((part) => !same.includes(part)), howItEnded(flight)];
+    caption.querySelector("span").textContent = own.join(" · ");
+    const later = flights.slice(i + 1).flatMap(notesOf);
+    box.querySelector(".note").textContent = notesOf(flight).filter((note) => !later.includes(note)).join(" · ");
+    return box;
+  });
 
 const shareAmong = (flights, tracks, moved) => {
   const points = flights.flatMap((flight, i) => flightPoints(flight, tracks[i]));
   const box = new THREE.Box3().setFromPoints(points);
   const length = Math.max(...flights.map((flight) => flight.ship.length));
   const strongest = Math.max(...tracks.map(strongestWind));
+  const highest = Math.max(
+    ...flights.map((flight, i) => flight.ground - tracks[i].column("centre", 2).reduce((a, b) => Math.min(a, b), flight.ground)),
+  );
   const follow = box.getSize(new THREE.Vector3()).length() > FARTHEST_FIXED * length;
   if (follow) {
     const start = flights.flatMap((flight, i) => shipPoints(flight, tracks[i].at(0)));
@@ -38,6 +50,7 @@ const shareAmong = (flights, tracks, moved) => {
     points,
     box,
     follow,
+    highest,
     scale: new TensionScale(flights[0].limits),
     perSpeed: strongest > 0 ? (LONGEST_WIND * length) / strongest : 0,
     moved,
@@ -51,10 +64,10 @@ class Page {
     this.clock = new Clock(Math.max(...this.tracks.map((tracks) => tracks.end), 1e-3));
     this.dirty = true;
     this.copying = false;
-    describe(flights);
+    const same = describe(flights);
     const shared = shareAmong(flights, this.tracks, (stage, rig) => this.moved(stage, rig));
     fillKey(document.getElementById("key"), flights, shared.scale);
-    const boxes = flights.map((flight) => makeStageBox(flight, flights.length > 1));
+    const boxes = makeStageBoxes(flights, same);
     document.body.classList.toggle("two", flights.length > 1);
     this.stages = [];
     flights.forEach((flight, i) => this.stages.push(new Stage(boxes[i].querySelector(".view"), flight, this.tracks[i], shared)));

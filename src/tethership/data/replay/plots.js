@@ -3,6 +3,7 @@
 const FLIGHT_COLOURS = ["#0072b2", "#d55e00"];
 const SIX_COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#000000"];
 const CABLE_DASHES = [[], [7, 3], [2, 2], [8, 3, 2, 3]];
+const SIDE = 132; // to the right of the axes, for the names of the series [px]
 const PLOT_FONT = "11px system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif";
 
 // What is plotted: panels of series, each series a column of a flight's track.
@@ -10,7 +11,7 @@ const makePanels = (flights, tracks) => {
   const two = flights.length > 1;
   const cables = flights.flatMap((flight, f) => flight.cables.map((cable, i) => ({ f, i, cable: cable.name })));
   const several = flights.some((flight) => flight.cables.length > 1);
-  const named = (f, words) => [two ? flights[f].name : "", words].filter(Boolean).join(": ");
+  const named = (f, words) => [two ? LETTERS[f] : "", words].filter(Boolean).join(": ");
   const perCable = (track, words) =>
     cables.map(({ f, i, cable }) => ({
       f,
@@ -25,23 +26,23 @@ const makePanels = (flights, tracks) => {
   const panels = [
     { title: "tension", unit: "N", log: true, tall: 1.5, series: perCable("tension", "") },
     {
-      title: "cable length",
+      title: two ? "cable length" : "cable length, distance to anchor",
       unit: "m",
       zero: true,
       series: [
         ...perCable("cable_length", two ? "" : "length"),
-        ...(two ? [] : perCable("distance", "anchor to ship").map((one) => ({ ...one, dash: [3, 3], label: several ? null : one.label }))),
+        ...(two ? [] : perCable("distance", "distance").map((one) => ({ ...one, dash: [3, 3], label: several ? null : one.label }))),
       ],
     },
     { title: "rewind rate", unit: "m/s", zero: true, tall: 0.75, series: perCable("rewind_rate", "") },
     ...flights.map((flight, f) => ({
-      title: two ? `throttle, ${flight.name}` : "throttle",
+      title: two ? `throttle ${LETTERS[f]}` : "throttle",
       unit: "–",
       span: [-1, 1],
-      series: each("throttle", flight.ship.thrusters.map((one) => one.name), f),
+      series: each("throttle", flight.ship.thrusters.map((one) => one.name.replace("starboard", "stbd")), f),
     })),
     {
-      title: two ? "attitude (dashed: " + flights[1].name + ")" : "attitude",
+      title: two ? "attitude (B dashed)" : "attitude",
       unit: "°",
       series: flights.flatMap((_, f) => each("attitude", f ? [null, null, null] : ["roll", "pitch", "yaw"], f, f ? [5, 3] : [])),
     },
@@ -52,6 +53,14 @@ const makePanels = (flights, tracks) => {
   }
   for (const panel of panels) panel.series = panel.series.filter((one) => tracks[one.f].has(one.track));
   return panels.filter((panel) => panel.series.length);
+};
+
+// Places from bottom to top [px] moved apart to a least gap, none above a top.
+const spread = (places, gap, top) => {
+  const found = [...places];
+  for (let i = 1; i < found.length; i += 1) found[i] = Math.min(found[i], found[i - 1] - gap);
+  for (let i = found.length - 1, least = top; i >= 0; i -= 1, least += gap) found[i] = Math.max(found[i], least);
+  return found;
 };
 
 const extent = (panel, flights, columns) => {
@@ -82,8 +91,9 @@ class Plots {
     panel.last = last;
     panel.box = document.createElement("section");
     panel.box.className = "panel";
-    panel.box.innerHTML = `<h2>${panel.title} <span>[${panel.unit}]</span></h2><ul></ul><div class="plot"></div>`;
-    panel.box.querySelector("h2").title = panel.title;
+    panel.box.innerHTML = `<h2></h2><div class="plot"></div><ul></ul>`;
+    panel.box.querySelector("h2").textContent = `${panel.title} [${panel.unit}]`;
+    panel.box.classList.toggle("log", Boolean(panel.log));
     this.legend(panel);
     this.parent.append(panel.box);
     const tables = this.flights.map((_, f) => {
@@ -109,6 +119,7 @@ class Plots {
       const item = document.createElement("li");
       item.innerHTML = `<svg viewBox="0 0 18 4"><path d="M0 2h18" stroke="${one.colour}" stroke-dasharray="${one.dash.join(" ")}"/></svg><span></span> <b></b>`;
       item.querySelector("span").textContent = one.label;
+      item.classList.toggle("alone", panel.series.length === 1);
       list.append(item);
       panel.entries.push({ one, value: item.querySelector("b") });
     }
@@ -118,16 +129,17 @@ class Plots {
     const axis = { font: PLOT_FONT, stroke: "#595959", grid: { stroke: "#e6e6e3", width: 1 }, ticks: { stroke: "#c9c9c9", size: 4, width: 1 } };
     const plain = (_, values) => values.map((value) => (value === null ? "" : String(Number(value.toPrecision(6)))));
     const decades = (_, splits) => splits.map((value) => (/^1e/.test(value.toExponential()) ? value : null));
+    const sparse = panel.log ? { filter: decades, grid: { ...axis.grid, filter: decades }, ticks: { ...axis.ticks, filter: decades } } : {};
     return {
       width: 300,
       height: 100,
-      padding: [6, panel.log ? 96 : 12, 0, 0],
+      padding: [6, SIDE, 0, 0],
       legend: { show: false },
       cursor: { drag: { x: false, y: false }, y: false, points: { show: false }, sync: { key: "time" } },
       scales: { x: { time: false, range: [0, this.clock.end] }, y: { distr: panel.log ? 3 : 1, range: panel.range } },
       axes: [
-        { ...axis, size: panel.last ? 38 : 8, label: panel.last ? "time [s]" : undefined, labelFont: PLOT_FONT, labelSize: 14, labelGap: 0, gap: 2, values: panel.last ? plain : () => [] },
-        { ...axis, size: 46, gap: 3, space: 22, values: plain, ...(panel.log ? { filter: decades } : {}) },
+        { ...axis, size: panel.last ? 22 : 8, label: panel.last ? "time [s]" : undefined, labelFont: PLOT_FONT, labelSize: 15, labelGap: 0, gap: 2, values: panel.last ? plain : () => [] },
+        { ...axis, size: 46, gap: 3, space: 22, values: plain, ...sparse },
       ],
       series: [{}, ...panel.series.map((one) => ({ stroke: one.colour, width: 1.25, dash: one.dash, points: { show: false }, spanGaps: true }))],
       hooks: { drawClear: [(plot) => this.shade(plot)], draw: panel.log ? [(plot) => this.limits(plot)] : [] },
@@ -154,14 +166,10 @@ class Plots {
     ctx.save();
     ctx.font = PLOT_FONT.replace("11px", `${10 * ratio}px`);
     ctx.textBaseline = "middle";
+    ctx.textAlign = "left";
     ctx.lineWidth = ratio;
     ctx.setLineDash([6 * ratio, 3 * ratio]);
-    let free = Infinity; // names keep their distance, from below
-    const place = found.sort((a, b) => b.y - a.y).map((limit) => {
-      free = Math.min(limit.y, free - 11 * ratio);
-      return free;
-    });
-    const over = bbox.top - 2 * ratio - place[place.length - 1];
+    const place = spread(found.sort((a, b) => b.y - a.y).map((limit) => limit.y), 11 * ratio, bbox.top + ratio);
     found.forEach((limit, i) => {
       ctx.strokeStyle = ctx.fillStyle = limit.colour;
       ctx.beginPath();
@@ -169,7 +177,7 @@ class Plots {
       ctx.lineTo(bbox.left + bbox.width, limit.y);
       ctx.stroke();
       const words = `${limit.name.replace("control ", "").replace("envelope ", "")} ${Number(limit.value.toPrecision(4))}`;
-      ctx.fillText(words, bbox.left + bbox.width + 5 * ratio, place[i] + (i > 0 ? Math.max(over, 0) : 0));
+      ctx.fillText(words, bbox.left + bbox.width + 5 * ratio, place[i]);
     });
     ctx.restore();
   }
@@ -189,15 +197,18 @@ class Plots {
   }
 
   resize() {
-    const share = this.panels.reduce((sum, panel) => sum + (panel.tall || 1), 0);
     const styles = getComputedStyle(this.parent);
     const stacked = styles.overflowY === "visible";
-    const heads = this.panels.reduce((sum, panel) => sum + panel.box.querySelector("h2").offsetHeight + panel.box.querySelector("ul").offsetHeight + 4, 0);
-    const free = this.parent.clientHeight - parseFloat(styles.paddingTop) - parseFloat(styles.paddingBottom) - heads - 30;
+    const foot = 29; // the time axis
+    const heads = this.panels.reduce((sum, panel) => sum + panel.box.querySelector("h2").offsetHeight, 0);
+    const free = this.parent.clientHeight - parseFloat(styles.paddingTop) - parseFloat(styles.paddingBottom) - heads - foot;
+    const share = this.panels.reduce((sum, panel) => sum + (panel.tall || 1), 0);
     for (const panel of this.panels) {
-      const part = stacked ? 110 * (panel.tall || 1) : Math.max((free * (panel.tall || 1)) / share, 64);
+      const tall = panel.tall || 1;
+      const names = 16 * panel.entries.length + 12;
+      const height = Math.max(stacked ? 120 * tall : (free * tall) / share, panel.log ? 130 : names, 60);
       const width = panel.box.clientWidth;
-      if (width > 0) panel.plot.setSize({ width, height: Math.round(part + (panel.last ? 30 : 0)) });
+      if (width > 0) panel.plot.setSize({ width, height: Math.floor(height + (panel.last ? foot : 0)) });
     }
     this.place(this.clock.time);
   }

@@ -19,7 +19,7 @@ class Readout {
       if (tracks.has(row.track) && flight.cables.length) this.row(row.name, row.unit, flight.cables.length, (now) => now.values(row.track).map((v) => v.toFixed(row.digits)), row.track);
     }
     this.row("altitude", "m", 1, (now) => [(flight.ground - now.values("centre")[2]).toFixed(2)]);
-    if (tracks.has("wind")) this.row("wind", "m/s", 1, (now) => [this.wind(now)], "wind");
+    if (tracks.has("wind")) this.row("wind", "m/s", 1, (now) => [now.vector("wind").length().toFixed(2)], "wind", (now) => `m/s from ${comesFrom(now.vector("wind"))}`);
     if (tracks.has("air_velocity") && !flight.cables.length) {
       this.row("airspeed", "m/s", 1, (now) => [now.vector("air_velocity").length().toFixed(2)]);
     }
@@ -34,7 +34,7 @@ class Readout {
     }
   }
 
-  row(name, unit, count, numbers, track = name) {
+  row(name, unit, count, numbers, track = name, units = null) {
     const line = this.table.tBodies[0].insertRow();
     line.dataset.track = track;
     const head = document.createElement("th");
@@ -45,16 +45,12 @@ class Readout {
     const last = line.insertCell();
     last.className = "unit";
     last.textContent = unit;
-    this.rows.push({ cells, numbers, track });
-  }
-
-  wind(now) {
-    const wind = now.vector("wind");
-    return `${wind.length().toFixed(2)} from ${comesFrom(wind)}`;
+    this.rows.push({ cells, numbers, track, last, units });
   }
 
   place(now) {
-    for (const { cells, numbers, track } of this.rows) {
+    for (const { cells, numbers, track, last, units } of this.rows) {
+      if (units) last.textContent = units(now);
       const found = numbers(now);
       cells.forEach((cell, i) => {
         if (cell.textContent !== found[i]) cell.textContent = found[i];

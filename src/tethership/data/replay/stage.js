@@ -19,7 +19,7 @@ class Stage {
     this.cables = new Cables(flight, tracks, shared.scale);
     this.wind = new Wind(flight.ship, shared.perSpeed, this.labels);
     const mast = flight.cables.length ? flight.cables[0].anchor : [...tracks.at(0).values("centre").slice(0, 2), 0];
-    this.ground = new Ground(shared.box, flight.ground, new THREE.Vector3(...mast), this.labels);
+    this.ground = new Ground(shared.box, flight.ground, shared.highest, new THREE.Vector3(...mast), this.labels);
     this.earth.add(this.ground.group, this.ship.shadow, this.ship.group, this.cables.group, this.wind.group);
     this.earth.add(makePath(tracks, DATA.colours.path));
     this.rig = new CameraRig(
@@ -83,7 +83,11 @@ const shipPoints = (flight, now, fromCentre = false) => {
 
 // Everything that a flight passes through.
 const flightPoints = (flight, tracks) => {
-  const points = flight.cables.map((cable) => new THREE.Vector3(...cable.anchor));
+  const size = 0.06 * flight.ship.length;
+  const points = flight.cables.flatMap((cable) => {
+    const anchor = new THREE.Vector3(...cable.anchor);
+    return [anchor, anchor.clone().addScaledVector(NORTH, size), anchor.clone().addScaledVector(UP, -size)];
+  });
   const steps = 60;
   for (let i = 0; i <= steps; i += 1) points.push(...shipPoints(flight, tracks.at((i / steps) * tracks.end)));
   return points;

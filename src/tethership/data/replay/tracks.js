@@ -2,6 +2,7 @@
 
 // What the page was written with.
 const DATA = JSON.parse(document.getElementById("flights").textContent);
+const LETTERS = ["A", "B"];
 
 const decoded = (text, Kind) => {
   const bytes = Uint8Array.from(atob(text), (character) => character.charCodeAt(0));

@@ -56,7 +56,7 @@ def scene(flight: Flight, name: str) -> dict[str, Any]:
     return {
         "name": name,
         "title": config.title,
-        "words": " · ".join(flown_words(config, attributes)),
+        "words": flown_words(config, attributes),
         "outcome": flight.outcome.name.replace("_", " "),
         "message": flight.outcome.value,
         "duration": float(found["time"][-1]),
