@@ -14,7 +14,7 @@ const howItEnded = (flight) => `${flight.outcome} after ${flight.duration.toFixe
 
 const notesOf = (flight) => [
   ...(flight.missing.length ? [`not in this file: ${flight.missing.join(", ")}`] : []),
-  ...(flight.ground_modelled ? [] : ["no ground in this scenario: the plane is at the anchor’s level"]),
+  ...(flight.ground_modelled ? [] : [`no ground in this scenario: the plane is at ${flight.cables.length ? "the anchor’s level" : "altitude 0"}`]),
 ];
 
 // The boxes of the flights; what is the same of all is not said twice.

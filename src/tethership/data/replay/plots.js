@@ -44,12 +44,13 @@ const makePanels = (flights, tracks) => {
     {
       title: two ? "attitude (B dashed)" : "attitude",
       unit: "°",
+      least: 1,
       series: flights.flatMap((_, f) => each("attitude", f ? [null, null, null] : ["roll", "pitch", "yaw"], f, f ? [5, 3] : [])),
     },
   ];
   if (!cables.length) {
     const straight = flights.map((flight, f) => ({ f, track: "centre", index: 2, label: named(f, ""), colour: FLIGHT_COLOURS[f], dash: [], of: (down) => flight.ground - down }));
-    panels.unshift({ title: "altitude of B", unit: "m", series: straight });
+    panels.unshift({ title: "altitude of B", unit: "m", least: 1, series: straight });
   }
   for (const panel of panels) panel.series = panel.series.filter((one) => tracks[one.f].has(one.track));
   return panels.filter((panel) => panel.series.length);
@@ -73,6 +74,8 @@ const extent = (panel, flights, columns) => {
     return [10 ** Math.floor(Math.log10(least)), 1.5 * Math.max(high, ...limits)];
   }
   if (panel.span) [low, high] = [Math.min(low, panel.span[0]), Math.max(high, panel.span[1])];
+  const lack = (panel.least || 0) - (high - low);
+  if (lack > 0) [low, high] = [low - 0.5 * lack, high + 0.5 * lack];
   if (panel.zero) [low, high] = [Math.min(low, 0), Math.max(high, 0)];
   const air = 0.06 * (high - low || Math.abs(high) || 1);
   return [panel.zero && low === 0 ? 0 : low - air, high + air];
@@ -151,7 +154,7 @@ class Plots {
     const { ctx, bbox } = plot;
     ctx.save();
     ctx.fillStyle = DATA.colours.gust;
-    for (const [start, end] of this.flights[0].gusts) {
+    for (const [start, end] of this.flights.flatMap((flight) => flight.gusts)) {
       const [left, right] = [start, end].map((time) => Math.min(Math.max(plot.valToPos(time, "x", true), bbox.left), bbox.left + bbox.width));
       ctx.fillRect(left, bbox.top, right - left, bbox.height);
     }

@@ -7,6 +7,8 @@ const READOUT = [
   { name: "rewind rate", track: "rewind_rate", unit: "m/s", digits: 3, each: "cable" },
 ];
 
+const windFrom = (velocity) => (velocity.length() < 0.005 ? "" : ` from ${comesFrom(velocity)}`);
+
 class Readout {
   constructor(parent, flight, tracks, scale) {
     this.flight = flight;
@@ -19,7 +21,7 @@ class Readout {
       if (tracks.has(row.track) && flight.cables.length) this.row(row.name, row.unit, flight.cables.length, (now) => now.values(row.track).map((v) => v.toFixed(row.digits)), row.track);
     }
     this.row("altitude", "m", 1, (now) => [(flight.ground - now.values("centre")[2]).toFixed(2)]);
-    if (tracks.has("wind")) this.row("wind", "m/s", 1, (now) => [now.vector("wind").length().toFixed(2)], "wind", (now) => `m/s from ${comesFrom(now.vector("wind"))}`);
+    if (tracks.has("wind")) this.row("wind", "m/s", 1, (now) => [now.vector("wind").length().toFixed(2)], "wind", (now) => `m/s${windFrom(now.vector("wind"))}`);
     if (tracks.has("air_velocity") && !flight.cables.length) {
       this.row("airspeed", "m/s", 1, (now) => [now.vector("air_velocity").length().toFixed(2)]);
     }

@@ -18,8 +18,9 @@ class Stage {
     this.ship = new Ship(flight.ship, flight.cables);
     this.cables = new Cables(flight, tracks, shared.scale);
     this.wind = new Wind(flight.ship, shared.perSpeed, this.labels);
-    const mast = flight.cables.length ? flight.cables[0].anchor : [...tracks.at(0).values("centre").slice(0, 2), 0];
-    this.ground = new Ground(shared.box, flight.ground, shared.highest, new THREE.Vector3(...mast), this.labels);
+    const beside = tracks.at(0).vector("centre").add(new THREE.Vector3(0, flight.ship.length, 0));
+    const mast = flight.cables.length ? new THREE.Vector3(...flight.cables[0].anchor) : beside;
+    this.ground = new Ground(shared.box, flight.ground, shared.highest, mast, this.labels);
     this.earth.add(this.ground.group, this.ship.shadow, this.ship.group, this.cables.group, this.wind.group);
     this.earth.add(makePath(tracks, DATA.colours.path));
     this.rig = new CameraRig(
