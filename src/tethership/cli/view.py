@@ -1,5 +1,7 @@
 """`tethership view`: one flight, or two side by side, as a page to be played in a browser."""
 
+import os
+import re
 import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -69,13 +71,13 @@ def _names(files: list[Path]) -> list[str]:
     for names in ([f.stem for f in files], [f.resolve().parent.name for f in files], [str(f) for f in files]):
         if len(set(names)) == len(files):
             return names
-    return [f"{file} ({i})" for i, file in enumerate(files, start=1)]
+    return [f"{file.stem} {i}" for i, file in enumerate(files, start=1)]
 
 
 def _page(files: list[Path], names: list[str], out: Path | None) -> Path:
     """Return where the page is written."""
     stems = [file.stem for file in files] if len(files) == 1 else [Path(name).name for name in names]
-    name = f"{'_'.join(stem.replace(' ', '_') for stem in stems)}_replay.html"
+    name = re.sub(r"[^\w.-]+", "_", "_".join(stems)) + "_replay.html"
     if out is None:
         return files[0].parent / name
     if out.is_dir() or not out.suffix:
@@ -88,7 +90,9 @@ def _page(files: list[Path], names: list[str], out: Path | None) -> Path:
 def _open(page: Path) -> None:
     """Open a page in the user's browser; where there is none, say where the page is."""
     try:
-        opened = webbrowser.open(page.resolve().as_uri())
+        browser = webbrowser.get()
+        in_terminal = type(browser) is webbrowser.GenericBrowser and "BROWSER" not in os.environ  # lynx and its like
+        opened = not in_terminal and browser.open(page.resolve().as_uri())
     except (webbrowser.Error, OSError):
         opened = False
     if not opened:
