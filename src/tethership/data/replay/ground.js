@@ -6,7 +6,7 @@ const niceStep = (wanted) => {
 };
 
 class Ground {
-  // `box` holds the flight, ground axes; `level` is the down coordinate of the ground, `highest` the altitude to mark [m].
+  // `box` holds the flight, ground axes; `level` is the down coordinate of the ground, marks go up to `highest` [m].
   constructor(box, level, highest, place, labels) {
     const size = box.getSize(new THREE.Vector3());
     this.level = level;

@@ -1,5 +1,7 @@
 // Words in the scene: HTML above the canvas, each at a point of the ground axes.
 
+const ROOM = 12; // to the right of a label [px]
+
 class Labels {
   constructor(parent) {
     this.parent = parent;
@@ -19,6 +21,7 @@ class Labels {
         if (next === this.words) return;
         this.words = next;
         element.textContent = next;
+        this.width = element.offsetWidth;
       },
     };
     label.text(words);
@@ -32,7 +35,8 @@ class Labels {
       const seen = label.shown && spot.z < 1 && Math.abs(spot.x) < 1.02 && Math.abs(spot.y) < 1.02;
       label.element.style.visibility = seen ? "visible" : "hidden";
       if (!seen) continue;
-      const [x, y] = [0.5 * (1 + spot.x) * width, 0.5 * (1 - spot.y) * height];
+      const x = Math.min(0.5 * (1 + spot.x) * width, width - label.width - ROOM);
+      const y = 0.5 * (1 - spot.y) * height;
       label.element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
     }
   }

@@ -14,7 +14,9 @@ const howItEnded = (flight) => `${flight.outcome} after ${flight.duration.toFixe
 
 const notesOf = (flight) => [
   ...(flight.missing.length ? [`not in this file: ${flight.missing.join(", ")}`] : []),
-  ...(flight.ground_modelled ? [] : [`no ground in this scenario: the plane is at ${flight.cables.length ? "the anchor’s level" : "altitude 0"}`]),
+  ...(flight.ground_modelled
+    ? []
+    : [`no ground in this scenario: the plane is at ${flight.cables.length ? "the anchor’s level" : "altitude 0"}`]),
 ];
 
 // The boxes of the flights; what is the same of all is not said twice.
@@ -28,7 +30,9 @@ const makeStageBoxes = (flights, same) =>
     const own = [...flight.words.filter((part) => !same.includes(part)), howItEnded(flight)];
     caption.querySelector("span").textContent = own.join(" · ");
     const later = flights.slice(i + 1).flatMap(notesOf);
-    box.querySelector(".note").textContent = notesOf(flight).filter((note) => !later.includes(note)).join(" · ");
+    box.querySelector(".note").textContent = notesOf(flight)
+      .filter((note) => !later.includes(note))
+      .join(" · ");
     return box;
   });
 
@@ -38,13 +42,16 @@ const shareAmong = (flights, tracks, moved) => {
   const length = Math.max(...flights.map((flight) => flight.ship.length));
   const strongest = Math.max(...tracks.map(strongestWind));
   const highest = Math.max(
-    ...flights.map((flight, i) => flight.ground - tracks[i].column("centre", 2).reduce((a, b) => Math.min(a, b), flight.ground)),
+    ...flights.map(
+      (flight, i) => flight.ground - tracks[i].column("centre", 2).reduce((a, b) => Math.min(a, b), flight.ground),
+    ),
   );
   const follow = box.getSize(new THREE.Vector3()).length() > FARTHEST_FIXED * length;
   if (follow) {
     const start = flights.flatMap((flight, i) => shipPoints(flight, tracks[i].at(0)));
     box.setFromPoints(start).expandByScalar(length);
-    for (const flight of flights) for (const cable of flight.cables) box.expandByPoint(new THREE.Vector3(...cable.anchor));
+    for (const flight of flights)
+      for (const cable of flight.cables) box.expandByPoint(new THREE.Vector3(...cable.anchor));
   }
   return {
     points,
@@ -64,13 +71,16 @@ class Page {
     this.clock = new Clock(Math.max(...this.tracks.map((tracks) => tracks.end), 1e-3));
     this.dirty = true;
     this.copying = false;
+    this.work = 0; // of the scripts for a frame, a running mean [ms]
     const same = describe(flights);
     const shared = shareAmong(flights, this.tracks, (stage, rig) => this.moved(stage, rig));
     fillKey(document.getElementById("key"), flights, shared.scale);
     const boxes = makeStageBoxes(flights, same);
     document.body.classList.toggle("two", flights.length > 1);
     this.stages = [];
-    flights.forEach((flight, i) => this.stages.push(new Stage(boxes[i].querySelector(".view"), flight, this.tracks[i], shared)));
+    flights.forEach((flight, i) =>
+      this.stages.push(new Stage(boxes[i].querySelector(".view"), flight, this.tracks[i], shared)),
+    );
     this.readouts = flights.map((flight, i) => new Readout(boxes[i], flight, this.tracks[i], shared.scale));
     this.plots = new Plots(document.getElementById("plots"), flights, this.tracks, this.clock);
     this.controls = new Controls(this.clock, (name) => this.chooseCamera(name));
@@ -118,7 +128,7 @@ class Page {
   }
 
   show() {
-    this.dirty = false;
+    const begun = performance.now();
     this.placeAll();
     this.stages.forEach((stage, i) => {
       stage.render();
@@ -129,7 +139,8 @@ class Page {
     this.plots.place(this.clock.time);
     this.plots.tell(this.stages.map((stage) => stage.now));
     this.controls.place(this.stages[0].rig.name);
-    this.dirty = false;
+    this.dirty = false; // what this very call moved is shown
+    this.work += 0.1 * (performance.now() - begun - this.work);
   }
 
   // What is seen, for tests: read from the scene and the plots themselves.
@@ -140,34 +151,17 @@ class Page {
       playing: this.clock.playing,
       speed: this.clock.speed,
       camera: this.stages[0].rig.name,
+      work: this.work,
       frames: this.stages.map((stage) => stage.frames),
       flights: this.stages.map(stageState),
-      plots: this.plots.panels.map((panel) => ({ title: panel.title, time: panel.plot.posToVal(panel.left, "x"), shown: panel.entries.map(({ one, value }) => [one.label, value.textContent]) })),
+      plots: this.plots.panels.map((panel) => ({
+        title: panel.title,
+        time: panel.plot.posToVal(panel.left, "x"),
+        shown: panel.entries.map(({ one, value }) => [one.label, value.textContent]),
+      })),
     };
   }
 }
-
-const stageState = (stage) => {
-  const { ship, cables, wind, rig, flight } = stage;
-  stage.scene.updateMatrixWorld(true);
-  const world = ship.group.localToWorld(new THREE.Vector3(...flight.ship.nose));
-  const list = (vector) => vector.toArray();
-  return {
-    name: flight.name,
-    centre: list(ship.point(flight.ship.axis)),
-    nose: list(toGround(world)),
-    nose_in_scene: list(world),
-    tension: stage.now.values("tension"),
-    cable_length: stage.now.values("cable_length"),
-    thrusts: ship.arrows.map((arrow) => ({ from: list(ship.point(arrow.from)), to: list(ship.point(arrow.to)), shown: arrow.group.visible })),
-    cables: cables.ends.map(([anchor, end], i) => ({ anchor, end, colour: cables.colours[i] })),
-    wind: { from: list(wind.mean.from), to: list(wind.mean.to) },
-    gust: { from: list(wind.gust.from), to: list(wind.gust.to), shown: wind.gust.group.visible },
-    camera: { position: list(toGround(rig.camera.position)), target: list(toGround(rig.controls.target)) },
-    nose_on_screen: list(toScene(ship.point(flight.ship.nose)).project(rig.camera)),
-    readout: Array.from(stage.parent.parentElement.querySelectorAll(".readout tbody tr"), (row) => row.innerText.trim()),
-  };
-};
 
 const start = () => {
   try {

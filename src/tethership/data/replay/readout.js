@@ -18,10 +18,25 @@ class Readout {
     this.rows = [];
     if (flight.cables.length > 1) this.heading(flight.cables.map((cable) => cable.name));
     for (const row of READOUT) {
-      if (tracks.has(row.track) && flight.cables.length) this.row(row.name, row.unit, flight.cables.length, (now) => now.values(row.track).map((v) => v.toFixed(row.digits)), row.track);
+      if (tracks.has(row.track) && flight.cables.length)
+        this.row(
+          row.name,
+          row.unit,
+          flight.cables.length,
+          (now) => now.values(row.track).map((v) => v.toFixed(row.digits)),
+          row.track,
+        );
     }
     this.row("altitude", "m", 1, (now) => [(flight.ground - now.values("centre")[2]).toFixed(2)]);
-    if (tracks.has("wind")) this.row("wind", "m/s", 1, (now) => [now.vector("wind").length().toFixed(2)], "wind", (now) => `m/s${windFrom(now.vector("wind"))}`);
+    if (tracks.has("wind"))
+      this.row(
+        "wind",
+        "m/s",
+        1,
+        (now) => [now.vector("wind").length().toFixed(2)],
+        "wind",
+        (now) => `m/s${windFrom(now.vector("wind"))}`,
+      );
     if (tracks.has("air_velocity") && !flight.cables.length) {
       this.row("airspeed", "m/s", 1, (now) => [now.vector("air_velocity").length().toFixed(2)]);
     }
@@ -56,7 +71,8 @@ class Readout {
       const found = numbers(now);
       cells.forEach((cell, i) => {
         if (cell.textContent !== found[i]) cell.textContent = found[i];
-        if (track === "tension") cell.style.setProperty("--tension", `#${this.scale.colour(Number(found[i])).getHexString()}`);
+        if (track === "tension")
+          cell.style.setProperty("--tension", `#${this.scale.colour(Number(found[i])).getHexString()}`);
       });
     }
   }
@@ -69,16 +85,21 @@ const fillKey = (element, flights, scale) => {
   const thrusters = flights[0].ship.thrusters;
   const parts = [];
   if (cables) {
-    const steps = scale.colours.map((colour, i) => `#${colour.getHexString()} ${(100 * scale.place(stops[i])).toFixed(1)}%`);
+    const steps = scale.colours.map(
+      (colour, i) => `#${colour.getHexString()} ${(100 * scale.place(stops[i])).toFixed(1)}%`,
+    );
     const marks = stops
       .slice(1)
-      .map((stop) => `<span style="left:${(100 * scale.place(stop)).toFixed(1)}%">${Number(stop.toPrecision(4))}</span>`);
+      .map(
+        (stop) => `<span style="left:${(100 * scale.place(stop)).toFixed(1)}%">${Number(stop.toPrecision(4))}</span>`,
+      );
     parts.push(
       `<div class="scale"><b>tension [N]</b><i style="background:linear-gradient(to right,${steps.join()})"></i>` +
         `<div>${marks.join("")}</div></div>`,
     );
   }
-  const arrow = (colour, words) => `<div><svg viewBox="0 0 26 8"><path fill="${colour}" d="M0 3h17V.5L26 4l-9 3.5V5H0z"/></svg>${words}</div>`;
+  const arrow = (colour, words) =>
+    `<div><svg viewBox="0 0 26 8"><path fill="${colour}" d="M0 3h17V.5L26 4l-9 3.5V5H0z"/></svg>${words}</div>`;
   if (thrusters.length) {
     const nominal = new Set(thrusters.map((one) => one.nominal));
     const full = nominal.size === 1 ? `, ${[...nominal][0]} N at full throttle` : "";

@@ -18,7 +18,10 @@ class Stage {
     this.ship = new Ship(flight.ship, flight.cables);
     this.cables = new Cables(flight, tracks, shared.scale);
     this.wind = new Wind(flight.ship, shared.perSpeed, this.labels);
-    const beside = tracks.at(0).vector("centre").add(new THREE.Vector3(0, flight.ship.length, 0));
+    const beside = tracks
+      .at(0)
+      .vector("centre")
+      .add(new THREE.Vector3(0, flight.ship.length, 0));
     const mast = flight.cables.length ? new THREE.Vector3(...flight.cables[0].anchor) : beside;
     this.ground = new Ground(shared.box, flight.ground, shared.highest, mast, this.labels);
     this.earth.add(this.ground.group, this.ship.shadow, this.ship.group, this.cables.group, this.wind.group);
@@ -74,8 +77,14 @@ const shipPoints = (flight, now, fromCentre = false) => {
   const rotation = now.rotation();
   const centre = now.vector("centre");
   const tail = [nose[0] - length, nose[1], nose[2]];
-  const found = [nose, tail].map((body) => new THREE.Vector3(...body).applyQuaternion(rotation).add(now.vector("position")));
-  for (const [north, east, down] of [[0, 0, 0.7], [0, 0.6, 0], [0, -0.6, 0]]) {
+  const found = [nose, tail].map((body) =>
+    new THREE.Vector3(...body).applyQuaternion(rotation).add(now.vector("position")),
+  );
+  for (const [north, east, down] of [
+    [0, 0, 0.7],
+    [0, 0.6, 0],
+    [0, -0.6, 0],
+  ]) {
     found.push(new THREE.Vector3(north, east, down).multiplyScalar(diameter).add(centre));
   }
   found.push(centre.clone().addScaledVector(UP, 0.5 * diameter + 0.2 * length));

@@ -14,7 +14,8 @@ const strongestWind = (tracks) => {
   if (!tracks.has("wind")) return 0;
   const { data } = tracks.found.wind;
   let strongest = 0;
-  for (let i = 0; i < data.length; i += 3) strongest = Math.max(strongest, Math.hypot(data[i], data[i + 1], data[i + 2]));
+  for (let i = 0; i < data.length; i += 3)
+    strongest = Math.max(strongest, Math.hypot(data[i], data[i + 1], data[i + 2]));
   return strongest;
 };
 

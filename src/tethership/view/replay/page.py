@@ -31,7 +31,9 @@ SCRIPTS = (
     "cameras",
     "stage",
     "readout",
+    "panels",
     "plots",
+    "state",
     "controls",
     "main",
 )

@@ -104,7 +104,7 @@ def chosen(data: xr.Dataset) -> NDArray[np.intp]:
     return np.union1d(evenly(time, INTERVAL, most - len(peaks)), peaks).astype(np.intp)
 
 
-def packed(values: Array, kind: str = "<f4") -> str:
+def packed(values: NDArray[Any], kind: str = "<f4") -> str:
     """Return numbers in base 64, little-endian: `<f4` single precision, `<u2` or `<u4` whole."""
     return base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode("ascii")
 
