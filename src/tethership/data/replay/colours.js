@@ -14,14 +14,15 @@ const SCENE_COLOURS = {
   staff: "#8a8272",
 };
 
-const TENSION_COLOURS = ["#6aaed6", "#0072b2", "#e69f00", "#d55e00", "#7a0019"];
+const TENSION_COLOURS = ["#56b4e9", "#0072b2", "#009e73", "#e69f00", "#d55e00", "#7a0019"];
 
-// Colours of tension: the middle ones at the watched limits, the first at a thirtieth of the lowest limit; in between
-// by the logarithm of the tension.
+// Colours of tension: the last ones at the watched limits, the first two at a thirtieth and a third of the lowest; in
+// between by the logarithm of the tension.
 class TensionScale {
   constructor(limits) {
     const values = limits.map((limit) => limit.value).sort((a, b) => a - b);
-    this.stops = [values[0] / 30, ...values];
+    this.stops = [values[0] / 30, values[0] / 3, ...values];
+    this.limits = values;
     this.colours = this.stops.map((_, i) => new THREE.Color(TENSION_COLOURS[Math.min(i, TENSION_COLOURS.length - 1)]));
   }
 

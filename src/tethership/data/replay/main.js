@@ -10,7 +10,7 @@ const describe = (flights) => {
   return same;
 };
 
-const howItEnded = (flight) => `${flight.outcome} after ${flight.duration.toFixed(1)} s`;
+const howItEnded = (flight) => `${flight.outcome} after ${flight.duration.toFixed(1)}\u00a0s`;
 
 const notesOf = (flight) => [
   ...(flight.missing.length ? [`not in this file: ${flight.missing.join(", ")}`] : []),

@@ -88,11 +88,9 @@ const fillKey = (element, flights, scale) => {
     const steps = scale.colours.map(
       (colour, i) => `#${colour.getHexString()} ${(100 * scale.place(stops[i])).toFixed(1)}%`,
     );
-    const marks = stops
-      .slice(1)
-      .map(
-        (stop) => `<span style="left:${(100 * scale.place(stop)).toFixed(1)}%">${Number(stop.toPrecision(4))}</span>`,
-      );
+    const marks = scale.limits.map(
+      (stop) => `<span style="left:${(100 * scale.place(stop)).toFixed(1)}%">${Number(stop.toPrecision(4))}</span>`,
+    );
     parts.push(
       `<div class="scale"><b>tension [N]</b><i style="background:linear-gradient(to right,${steps.join()})"></i>` +
         `<div>${marks.join("")}</div></div>`,
