@@ -32,10 +32,12 @@ bench: $(VENV)/.installed-dev
 	$(BIN)/python benchmarks/linear.py
 	$(BIN)/python benchmarks/batch.py
 	$(BIN)/python benchmarks/campaign.py
+	$(BIN)/python benchmarks/replay.py # needs Chromium
 
-figures: $(VENV)/.installed
+figures: $(VENV)/.installed-dev
 	$(BIN)/tethership dock --wind 12 --layers rewind,heading --out out/readme
 	cp out/readme/docking.png docs/docking.png
+	$(BIN)/python docs/make_replay_picture.py out/readme/replay.html docs/replay.png # needs Chromium, playwright
 	$(BIN)/tethership sweep --over wind=6:12:13 --out out/readme
 	cp out/readme/root_locus.png docs/root_locus.png
 

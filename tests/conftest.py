@@ -58,15 +58,21 @@ BROWSER_FLAGS = [
 ]
 
 
-@pytest.fixture
-def browsed(tmp_path):
-    """Return a function from a page and a fragment to the page as a headless browser has it once it is loaded."""
+@pytest.fixture(scope="session")
+def browser():
+    """Path of a browser; without one the test is skipped."""
     if BROWSER is None:
         pytest.skip("NO BROWSER: pages are NOT tested in one; install Debian's chromium (apt-get install chromium)")
+    return BROWSER
+
+
+@pytest.fixture
+def browsed(browser, tmp_path):
+    """Return a function from a page and a fragment to the page as a headless browser has it once it is loaded."""
 
     def shown(page: Path, fragment: str = "") -> str:
         profile = f"--user-data-dir={tmp_path / 'profile'}"
-        command = [BROWSER, *BROWSER_FLAGS, profile, f"{page.as_uri()}{fragment}"]
+        command = [browser, *BROWSER_FLAGS, profile, f"{page.as_uri()}{fragment}"]
         return subprocess.run(command, capture_output=True, text=True, timeout=120, check=True).stdout
 
     return shown

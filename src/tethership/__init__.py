@@ -64,6 +64,7 @@ if TYPE_CHECKING:
         plot_loads,
         plot_modes,
         plot_root_locus,
+        write_replay,
     )
 
 _HOMES = {
@@ -101,6 +102,7 @@ _HOMES = {
     "sensitivities": "analysis",
     "sweep": "analysis",
     "trim": "analysis",
+    "write_replay": "view",
 }
 
 _PARTS = (
@@ -156,6 +158,7 @@ __all__ = [
     "sensitivities",
     "sweep",
     "trim",
+    "write_replay",
 ]
 
 

@@ -70,6 +70,8 @@ def test_dock_json_and_again(run, tmp_path):
     assert len(result["seconds_above"]) == 4
     assert sorted(result["seconds_above"], reverse=True) == result["seconds_above"]
     assert (tmp_path / "a" / "docking.png").read_bytes().startswith(b"\x89PNG")
+    assert [file.rpartition("/")[2] for file in result["files"]] == ["flight.nc", "docking.png", "replay.html"]
+    assert (tmp_path / "a" / "replay.html").read_bytes().startswith(b"<!DOCTYPE html>")
     code, out, _ = run("dock", "--from", tmp_path / "a" / "flight.nc", "--json", "--out", tmp_path / "b")
     assert code == 0
     again = json.loads(out)

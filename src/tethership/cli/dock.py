@@ -1,4 +1,4 @@
-"""`tethership dock`: trim, fly, print the metrics, write the flight and its picture."""
+"""`tethership dock`: trim, fly, print the metrics, write the flight, its picture and its replay."""
 
 import sys
 import time
@@ -55,7 +55,8 @@ def dock(
 ) -> None:
     """Trim the ship on its cable, fly the docking manoeuvre and show what happened.
 
-    Writes flight.nc (labelled data with the full input) and docking.png (the paper's four panels) into --out.
+    Writes flight.nc (labelled data with the full input), docking.png (the paper's four panels) and replay.html (the
+    flight in space, opens in a browser without a network) into --out.
     """
     given = (scenario, wind, formulation, layers, changes, no_sas, solver)
     if from_ is not None and given != ("docking", None, None, None, None, False, "adaptive"):
@@ -160,15 +161,17 @@ def _again(path: Path) -> tuple[Scenario, "Flight", str]:
 
 
 def _drawn(flight: "Flight", out: Path) -> list[str]:
-    """Draw the picture and return its path; a flight too short to draw has none."""
-    from tethership.view import plot_docking
+    """Draw picture and replay and return their paths; a flight too short to draw has none."""
+    from tethership.view import plot_docking, write_replay
 
     if flight.data.sizes["time"] < 2:
         return []
     with stage("draw"):
         path = out / "docking.png"
         plot_docking(flight).savefig(path, dpi=120)
-    return [str(path)]
+    with stage("replay"):
+        replay = write_replay(flight, out / "replay.html")
+    return [str(path), str(replay)]
 
 
 def summary(scenario: Scenario, flight: "Flight") -> dict[str, Any]:

@@ -38,8 +38,8 @@ def direction_from(azimuth: Float[Array, ""], upward: Float[Array, ""] | float =
     return jnp.stack([-level * jnp.cos(azimuth), -level * jnp.sin(azimuth), -jnp.sin(jnp.asarray(upward))])
 
 
-def _wind(config: AnyWindConfig, ground: Float[Array, ""]) -> AbstractWind:
-    """Return the mean wind; that of a measured history is the same everywhere."""
+def build_wind(config: AnyWindConfig, ground: Float[Array, ""]) -> AbstractWind:
+    """Return the mean wind; `ground` is the down coordinate of the ground [m]. A measured history has one mean."""
     velocity = config.speed * direction_from(jnp.asarray(config.from_direction))
     if isinstance(config, PowerLawWindConfig):
         reference, exponent, lowest = map(jnp.asarray, (config.reference_height, config.exponent, config.lowest_height))
@@ -102,7 +102,7 @@ def build_environment(config: ScenarioConfig) -> Environment:
     height = config.ground.anchor_height
     ground = jnp.asarray(0.0 if height is None else height)
     effect = config.ground.effect_coefficient
-    wind = _wind(config.wind, ground)
+    wind = build_wind(config.wind, ground)
     return Environment(
         gravity=jnp.array([0.0, 0.0, STANDARD_GRAVITY]),
         atmosphere=_atmosphere(config),

@@ -153,7 +153,8 @@ def _column(rows: tuple, key: str) -> Float[Array, "n"]:
     return jnp.asarray([getattr(row, key) for row in rows], dtype=float)
 
 
-def _thrusters(config: VehicleConfig, shift: Float[Array, "3"]) -> Thrusters:
+def build_thrusters(config: VehicleConfig, shift: Float[Array, "3"]) -> Thrusters:
+    """Return all thrusters of a vehicle, placed from a reference point that is `shift` [m] from the file's origin."""
     rows = config.thrusters
     lapse = [0.0 if row.speed_of_no_thrust is None else 1.0 / row.speed_of_no_thrust for row in rows]
     return Thrusters(
@@ -205,7 +206,7 @@ def build_ship(config: VehicleConfig, formulation: str, reference_point: Float[A
         apparent_mass=_apparent_mass(config, formulation, centre),
         envelope=_envelope(config, hull, formulation, centre),
         fins=_fins(config, shift),
-        thrusters=_thrusters(config, shift),
+        thrusters=build_thrusters(config, shift),
         outline=Strips(outline, radius, width),
         nose=centre + jnp.stack([hull.centre(), jnp.zeros(()), jnp.zeros(())]),
     )

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from tethership.view.docking import plot_docking
 from tethership.view.loads import plot_loads
+from tethership.view.replay import write_replay
 from tethership.view.root_locus import plot_linear_figure, plot_root_locus
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ __all__ = [
     "plot_loads",
     "plot_modes",
     "plot_root_locus",
+    "write_replay",
 ]
 
 _LATER = {"interactive_root_locus": "interactive", "plot_campaign": "campaign_plot", "plot_modes": "mode_shape"}

@@ -1,27 +1,23 @@
 """The docking figure: a flight from three sides and its time histories. Depends on: matplotlib, view."""
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from tethership.scenario.schema import GustConfig
 from tethership.simulation import Flight
 from tethership.view import style
 from tethership.view.histories import draw_histories
 from tethership.view.projection import FROM_EAST, FROM_NORTH, FROM_TOP
 from tethership.view.snapshots import Snapshots, take_snapshots
 from tethership.view.trajectory import draw_view
+from tethership.view.words import flown_words
 
 SIZE = (10.8, 8.6)
 """Width and height of the figure [inch]."""
 
 LEFT = 0.075
 """Left margin, over the figure's width [-]."""
-
-POINTS = ["N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"]
-"""Points of the compass, clockwise."""
 
 
 def plot_docking(flight: Flight, figure: Figure | None = None, title: str | None = None) -> Figure:
@@ -87,30 +83,13 @@ def _layout(figure: Figure) -> tuple[Axes, Axes, Axes, tuple[Axes, Axes, Axes]]:
 def _title(figure: Figure, snapshots: Snapshots, title: str | None) -> None:
     """Write the title, the scenario's if none is given, and, below it, how it was flown and how it ended."""
     attributes, config = snapshots.flight.attributes, snapshots.config
-    wind = config.wind
-    layers = ", ".join(attributes["layers"]) or "none"
     parts = [
-        f"wind {wind.speed:.3g} m/s from {compass(wind.from_direction)}" if wind.speed > 0 else "no wind",
-        *_gusts(config.gusts),
-        f"layers: {layers}" + ("" if attributes["sas"] else " (no SAS)"),
-        f"{attributes['formulation']} formulation",
+        *flown_words(config, attributes),
         f"{attributes['outcome'].replace('_', ' ')} after {snapshots.time[-1]:.1f} s",
     ]
     words = config.title if title is None else title
     figure.text(LEFT, 0.972, words, fontsize=style.FONT + 4, weight="bold", color=style.INK, va="center")
     figure.text(LEFT, 0.944, "  ·  ".join(parts), fontsize=style.FONT, color=style.INK, va="center")
-
-
-def _gusts(gusts: tuple[GustConfig, ...]) -> list[str]:
-    """Return what is said of the gusts."""
-    if len(gusts) > 1:
-        return [f"{len(gusts)} gusts"]
-    return [f"gust from {compass(gust.from_direction)} at {gust.start:g} s" for gust in gusts]
-
-
-def compass(azimuth: float) -> str:
-    """Return the point of the compass of an azimuth [rad], clockwise from north."""
-    return POINTS[round(float(np.degrees(azimuth)) / 22.5) % 16]
 
 
 def _legend(figure: Figure, snapshots: Snapshots) -> None:
