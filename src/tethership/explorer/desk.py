@@ -136,6 +136,11 @@ class Desk:
             if request in self._standings and not self._standings[request].busy:
                 del self._standings[request]
 
+    def find(self, wanted: Callable[[Request], bool]) -> Request | None:
+        """Return a request that is kept and wanted, if there is one."""
+        with self._changed:
+            return next(filter(wanted, self._standings), None)
+
     def close(self) -> None:
         """Stop everything and end the computing process."""
         with self._changed:
