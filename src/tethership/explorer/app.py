@@ -7,7 +7,7 @@ from importlib import resources
 from typing import Any
 
 import dash
-from dash import ALL, MATCH, Dash, Input, Output, State, ctx, no_update
+from dash import ALL, MATCH, Dash, Input, Output, State, ctx, html, no_update
 
 from tethership._version import __version__
 from tethership.errors import ConfigError, TethershipError
@@ -21,7 +21,12 @@ from tethership.explorer.views import HEADS, RESTS, verdict
 
 EMPTY_FIGURE = {"data": [], "layout": {"height": 40, "xaxis": {"visible": False}, "yaxis": {"visible": False}}}
 
-TEXTS = {"text": ALL}
+TEXTS = {"name": ALL, "part": "text", "kind": ALL}
+"""All texts of the panel."""
+
+TEXT = {"name": MATCH, "part": "text", "kind": "main"}
+
+SLIDER = {"name": MATCH, "part": "slider", "kind": "main"}
 
 FIRST_OVER = ("wind.speed", "trim.elongation", "vehicle.body.mass")
 """What a locus runs over at first: the first of these that the scenario has."""
@@ -90,7 +95,7 @@ def _panel_callbacks(app: Dash, known: Understanding) -> None:
         prevent_initial_call=True,
     )
     def add(name: str | None, scenario: str, shown: list[Any], present: list[dict[str, str]]) -> Any:
-        if not name or name in [entry["text"] for entry in present]:
+        if not name or name in [entry["name"] for entry in present]:
             return no_update
         parameter = known_parameters(known.base(scenario).config).get(name)
         return no_update if parameter is None else [*shown, field(extra_field(parameter))]
@@ -117,10 +122,10 @@ def _browser_callbacks(app: Dash) -> None:
     """What happens in the page alone: slider and text follow each other, tabs change, a file is downloaded."""
     app.clientside_callback(
         dash.ClientsideFunction("explorer", "follow"),
-        Output({"text": MATCH}, "value"),
-        Output({"slider": MATCH}, "value"),
-        Input({"text": MATCH}, "value"),
-        Input({"slider": MATCH}, "value"),
+        Output(TEXT, "value"),
+        Output(SLIDER, "value"),
+        Input(TEXT, "value"),
+        Input(SLIDER, "value"),
         prevent_initial_call=True,
     )
     app.clientside_callback(
@@ -130,10 +135,10 @@ def _browser_callbacks(app: Dash) -> None:
     )
     app.clientside_callback(
         dash.ClientsideFunction("explorer", "download"),
-        Output({"download": MATCH}, "title"),
-        Input({"download": MATCH}, "n_clicks"),
-        State({"text": MATCH, "kind": "file"}, "data"),
-        State({"name": MATCH}, "value"),
+        Output({"view": MATCH, "part": "download"}, "title"),
+        Input({"view": MATCH, "part": "download"}, "n_clicks"),
+        State({"view": MATCH, "part": "file"}, "data"),
+        State({"view": MATCH, "part": "file-name"}, "value"),
         prevent_initial_call=True,
     )
 
@@ -142,16 +147,16 @@ def _save_callback(app: Dash, known: Understanding, desk: Desk) -> None:
     """Write a file into the folder."""
 
     @app.callback(
-        Output({"saved": MATCH}, "children"),
-        Input({"save": MATCH}, "n_clicks"),
-        State({"name": MATCH}, "value"),
+        Output({"view": MATCH, "part": "saved"}, "children"),
+        Input({"view": MATCH, "part": "save"}, "n_clicks"),
+        State({"view": MATCH, "part": "file-name"}, "value"),
         State("shown", "data"),
         prevent_initial_call=True,
     )
     def save(clicks: int | None, name: str, shown: dict[str, str]) -> Any:
         if not clicks:
             return no_update
-        view = ctx.triggered_id["save"]
+        view = ctx.triggered_id["view"]
         request = desk.find(lambda one: one.view == view and _key(one) == shown.get(view))
         if request is None:
             return "This is no longer kept; change something or compute again."
@@ -238,7 +243,7 @@ class Showing:
 
     def _trouble(self, view: str, words: str, shown: dict[str, str]) -> tuple[Any, ...]:
         """Return the page for wrong input: what is shown stays, marked as old."""
-        head = ("wrong input", "state bad", {}, "progress", True, True, True, f"Not computed: {words}", no_update)
+        head = ("wrong input", "state bad", {"width": "0"}, "progress", True, True, True, f"Not computed: {words}", no_update)
         return (*head, *self._views(view, (*(no_update,) * 5, "view stale")))
 
     def _page(self, view: str, standing: Standing, shown: dict[str, str]) -> tuple[Any, ...]:
@@ -269,7 +274,13 @@ def _result(view: str, standing: Standing) -> tuple[Any, ...]:
     result = standing.result
     figure = result.get("figure")
     style = {} if figure else {"display": "none"}
-    return HEADS[view](result), figure or EMPTY_FIGURE, style, RESTS[view](result)
+    return [_asked(standing.request), HEADS[view](result)], figure or EMPTY_FIGURE, style, RESTS[view](result)
+
+
+def _asked(request: Request) -> html.P:
+    """Return what a result is of."""
+    words = request.choice.words
+    return html.P([html.B(request.choice.scenario), " · ", "; ".join(words) or "unchanged"], className="asked")
 
 
 def _state(standing: Standing) -> tuple[str, str]:

@@ -43,15 +43,15 @@ class Field(NamedTuple):
 
 AIR = (("wind.speed", "wind speed"), ("wind.from_direction", "wind from"))
 TRIM = (
-    ("trim.elongation", "elongation (distance / length)"),
-    ("trim.elevation", "elevation seen from the anchor"),
-    ("trim.bearing", "bearing from the anchor"),
+    ("trim.elongation", "elongation"),
+    ("trim.elevation", "elevation"),
+    ("trim.bearing", "bearing"),
 )
 POSITION = (("trim.position.0", "north"), ("trim.position.1", "east"), ("trim.position.2", "down"))
 SHIP = (
     ("vehicle.body.mass", "mass"),
     ("vehicle.buoyancy.volume", "displaced volume"),
-    ("vehicle.thrusters.*.nominal_thrust", "nominal thrust, each"),
+    ("vehicle.thrusters.*.nominal_thrust", "nominal thrust"),
 )
 CABLE = (
     ("length", "length"),
@@ -59,16 +59,16 @@ CABLE = (
     ("linear_density", "linear density"),
     ("diameter", "diameter"),
     ("breaking_force", "breaking force"),
-    ("tether_point.0", "tether point, forward"),
-    ("tether_point.1", "tether point, starboard"),
-    ("tether_point.2", "tether point, down"),
+    ("tether_point.0", "tether pt. forward"),
+    ("tether_point.1", "tether pt. starboard"),
+    ("tether_point.2", "tether pt. down"),
     ("winch.rewind_rate", "rewind rate"),
 )
 START = (
-    ("start.attitude_offset.0", "start, roll from trim"),
-    ("start.attitude_offset.1", "start, pitch from trim"),
-    ("start.attitude_offset.2", "start, yaw from trim"),
-    ("stop.cable_length", "docked at a cable of"),
+    ("start.attitude_offset.0", "roll off trim"),
+    ("start.attitude_offset.1", "pitch off trim"),
+    ("start.attitude_offset.2", "yaw off trim"),
+    ("stop.cable_length", "docked at cable of"),
     ("stop.time_limit", "time limit"),
 )
 GUST = (("fraction", "share of the wind"), ("speed", "speed"), ("from_direction", "from"), ("start", "start"))
@@ -122,7 +122,7 @@ def groups(config: ScenarioConfig) -> dict[str, list[Field]]:
         **{title: _prefixed(f"cables.{name}", CABLE) for name, title in cables},
         "Ship": SHIP,
         "Gains": _prefixed("control", GAINS),
-        "Flight": START,
+        "Start and end": START,
         **{
             f"Gust {i + 1}" if len(config.gusts) > 1 else "Gust": _prefixed(f"gusts.{i}", GUST)
             for i in range(len(config.gusts))

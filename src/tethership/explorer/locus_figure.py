@@ -3,6 +3,7 @@
 import json
 from typing import Any
 
+import numpy as np
 import plotly.graph_objects as go
 
 from tethership.analysis import Modes, Sweep
@@ -13,6 +14,12 @@ from tethership.view.root_locus import SLOWEST
 HOVER = "<b>%{text}</b><br>chosen scenario<br>λ = %{x:.5f} %{y:+.5f}i 1/s<extra></extra>"
 
 HEIGHT = 520
+
+SHIFTS = (14, -15, 28, -29)
+"""Where a name may stand above its star [px]; the first that is free."""
+
+NEAR = (0.3, 0.12)
+"""Shares of the panel's width and height within which two names would meet."""
 
 
 def locus_figure(found: Sweep, own: Modes | None) -> dict[str, Any]:
@@ -29,8 +36,7 @@ def locus_figure(found: Sweep, own: Modes | None) -> dict[str, Any]:
     figure.data = [trace for trace in figure.data if trace.name != "reference"]
     for axis in ("", "2") if own is not None else ():
         figure.add_trace(_stars(own, axis))
-        for mode in own.modes:
-            _name(figure, mode.name, mode.eigenvalue, axis)
+        _names(figure, found, own, axis)
     figure.update_layout(
         title=None,
         height=HEIGHT,
@@ -58,17 +64,19 @@ def _stars(own: Modes, axis: str) -> go.Scatter:
     )
 
 
-def _name(figure: go.Figure, name: str, root: complex, axis: str) -> None:
-    """Write a mode's name beside its star, once: the slow ones in the right panel, the fast ones in the left."""
-    slow = abs(root) < SLOWEST
-    if slow == (axis == "2"):
+def _names(figure: go.Figure, found: Sweep, own: Modes, axis: str) -> None:
+    """Write the modes' names beside their stars, once: the slow ones in the right panel, the others in the left."""
+    slow = axis == "2"
+    drawn = np.concatenate([found.eigenvalues[found.trimmed].ravel(), own.eigenvalues])
+    drawn = drawn[np.abs(drawn) < SLOWEST] if slow else drawn
+    width, height = (max(float(np.ptp(part)), 1e-9) for part in (drawn.real, drawn.imag))
+    placed: list[tuple[float, float, int]] = []
+    modes = [mode for mode in own.modes if (abs(mode.eigenvalue) < SLOWEST) == slow]
+    for mode in sorted(modes, key=lambda mode: mode.eigenvalue.real):
+        x, y = mode.eigenvalue.real, mode.eigenvalue.imag
+        near = {s for u, v, s in placed if abs(u - x) < NEAR[0] * width and abs(v - y) < NEAR[1] * height}
+        shift = next((shift for shift in SHIFTS if shift not in near), SHIFTS[0])
+        placed.append((x, y, shift))
         figure.add_annotation(
-            x=root.real,
-            y=root.imag,
-            text=name,
-            xref=f"x{axis}",
-            yref=f"y{axis}",
-            showarrow=False,
-            yshift=14,
-            font={"size": 11},
+            x=x, y=y, text=mode.name, xref=f"x{axis}", yref=f"y{axis}", showarrow=False, yshift=shift, font={"size": 11}
         )

@@ -17,6 +17,8 @@ POLL = 250
 GRAPH = {"displaylogo": False, "responsive": True, "displayModeBar": "hover", "showTips": False}
 """How plotly shows a figure."""
 
+FIRST = "Nothing is computed yet. The first time the programs are compiled, which takes seconds; then it is tenths of one."
+
 EMPTY = {"data": [], "layout": {"xaxis": {"visible": False}, "yaxis": {"visible": False}, "height": 120}}
 """A figure before there is one."""
 
@@ -68,10 +70,10 @@ def page(scenario: Scenario, name: str, names: Sequence[str], folder: str, versi
                     ),
                     html.Main(
                         [
-                            dcc.Tabs(
+                            dcc.RadioItems(
                                 id="tab",
                                 value="trim",
-                                children=[dcc.Tab(label=words, value=view) for view, words in VIEWS.items()],
+                                options=[{"label": words, "value": view} for view, words in VIEWS.items()],
                                 className="tabs",
                             ),
                             html.Div("", id="trouble", className="trouble", role="alert"),
@@ -113,7 +115,7 @@ def _view(view: str) -> html.Section:
             *options,
             html.Div(
                 [
-                    html.Div([], id={"head": view}),
+                    html.Div(html.P(FIRST, className="asked"), id={"head": view}),
                     dcc.Graph(id={"figure": view}, figure=EMPTY, config=GRAPH, className="figure"),
                     html.Div([], id={"rest": view}),
                 ],

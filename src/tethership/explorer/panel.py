@@ -32,9 +32,8 @@ def _group(title: str, rows: list[Field]) -> html.Details:
 
 def field(entry: Field) -> html.Div:
     """Return one number: label, text, unit, slider."""
-    name = {"field": entry.name}
     text = dcc.Input(
-        id={"text": entry.name},
+        id={"name": entry.name, "part": "text", "kind": "plain" if entry.span is None else "main"},
         value=entry.text,
         type="text",
         debounce=True,
@@ -51,10 +50,10 @@ def field(entry: Field) -> html.Div:
         className="row",
     )
     if entry.span is None:
-        return html.Div(row, className="field", id=name)
+        return html.Div(row, className="field")
     low, high = entry.span
     slider = dcc.Slider(
-        id={"slider": entry.name},
+        id={"name": entry.name, "part": "slider", "kind": "main"},
         min=low,
         max=high,
         step=_step(high - low),
@@ -65,7 +64,7 @@ def field(entry: Field) -> html.Div:
         included=False,
         className="slider",
     )
-    return html.Div([row, slider], className="field", id=name)
+    return html.Div([row, slider], className="field")
 
 
 def _step(width: float) -> float:

@@ -7,6 +7,7 @@ import json
 import re
 import shlex
 import tomllib
+from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
 from tethership.errors import ConfigError
@@ -15,6 +16,9 @@ from tethership.scenario import Scenario
 from tethership.scenario.parameters import list_parameters
 
 HEADING = re.compile(r"^\[changes\][^\n]*$", re.MULTILINE)
+
+FIRST_TABLE = re.compile(r"^\[", re.MULTILINE)
+"""Where the first table begins: the changes are put before it, where they are seen."""
 
 
 class Span(NamedTuple):
@@ -87,18 +91,37 @@ def file_text(base: Scenario, text: str, choice: Choice) -> str:
     lines = [f'"{key}" = {_entry(key, value, units.get(key))}' for key, value in choice.values.items()]
     if not lines:
         return text
-    for key in choice.values:
-        text = re.sub(rf'^(?:"{re.escape(key)}"|{re.escape(key)})\s*=[^\n]*\n', "", text, flags=re.MULTILINE)
-    added = "\n".join(lines)
-    if HEADING.search(text):
-        whole = HEADING.sub(lambda found: f"{found[0]}\n{added}", text, count=1)
-    else:
-        whole = f"{text.rstrip()}\n\n[changes] # made in tethership explore; they win over what stands above\n{added}\n"
-    try:
-        tomllib.loads(whole)
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"{base.name} has changes of its own that are no table; write them under [changes]") from error
-    return whole
+    former = tomllib.loads(text)
+    wanted = {**former, "changes": {**former.get("changes", {}), **_parsed(lines)}}
+    for whole in _ways(text, choice.values, "\n".join(lines)):
+        try:
+            if tomllib.loads(whole) == wanted:
+                return whole
+        except tomllib.TOMLDecodeError:
+            continue
+    raise ConfigError(f"{base.name} has changes of its own that are no table; write them under [changes], one a line")
+
+
+def _parsed(lines: Iterable[str]) -> dict[str, Any]:
+    return tomllib.loads("\n".join(lines))
+
+
+def _ways(text: str, keys: Iterable[str], added: str) -> Iterator[str]:
+    """Yield the text with lines in its table `[changes]`, or in a new one: before the first table, or at the end."""
+    heading = HEADING.search(text)
+    if heading is not None:
+        after = FIRST_TABLE.search(text, heading.end())
+        end = len(text) if after is None else after.start()
+        kept = text[heading.end() + 1 : end]
+        for key in keys:
+            kept = re.sub(rf'^"{re.escape(key)}"\s*=[^\n]*\n?', "", kept, flags=re.MULTILINE)
+        yield f"{text[: heading.end()]}\n{added}\n{kept}{text[end:]}"
+        return
+    table = f"[changes] # made in tethership explore; they win over what stands elsewhere in this file\n{added}\n"
+    first = FIRST_TABLE.search(text)
+    if first is not None:
+        yield f"{text[: first.start()]}{table}\n{text[first.start() :]}"
+    yield f"{text.rstrip()}\n\n{table}"
 
 
 def _number(value: float, unit: str, si_unit: str) -> str:

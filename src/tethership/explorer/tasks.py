@@ -58,6 +58,9 @@ def _trim(scenario: Scenario, options: Mapping[str, Any], report: Report) -> dic
     report("looking for the equilibrium", None)
     point = trim(scenario)
     config = scenario.config
+    report("drawing", None)
+    from tethership.explorer.trim_figure import trim_figure
+
     values = np.asarray(point.state.as_vector())
     angular = (*ANGLES, *RATES)
     state = {
@@ -76,6 +79,7 @@ def _trim(scenario: Scenario, options: Mapping[str, Any], report: Report) -> dic
         "breaking": {c.name: c.breaking_force for c in config.cables},
         "residual": np.asarray(point.residual).tolist(),
         "wind": config.wind.speed,
+        "figure": None if point.outcome is TrimOutcome.no_equilibrium else trim_figure(scenario, point),
     }
 
 

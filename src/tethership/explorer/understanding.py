@@ -136,7 +136,7 @@ def _around(parameter: Parameter) -> tuple[float, float]:
 def form_of(scenario: str, names: list[Any], texts: list[Any], layers: Any, sas: Any, formulation: Any) -> Form:
     """Return what the page says as a form; nothing that was typed stands for the scenario's own."""
     typed_texts = {
-        str(name["text"]): str(text) for name, text in zip(names, texts, strict=True) if str(text or "").strip()
+        str(name["name"]): str(text) for name, text in zip(names, texts, strict=True) if str(text or "").strip()
     }
     return Form(
         str(scenario),

@@ -88,7 +88,7 @@ def locus_rest(result: dict[str, Any]) -> Any:
     """Return the modes of the chosen scenario and what happens along the sweep."""
     if result["figure"] is None:
         return []
-    header = ("mode", "λ [1/s]", "frequency [rad/s]", "damping", "period [s]", "halves / doubles in [s]")
+    header = ("mode", "λ [1/s]", "frequency [rad/s]", "damping", "period [s]", "amplitude")
     rows = [
         (
             mode["name"],
@@ -167,7 +167,7 @@ def _root(pair: Sequence[float]) -> str:
 def _time(mode: dict[str, Any]) -> str:
     if mode["half_or_double_time"] is None:
         return "–"
-    return f"{'halves' if mode['stable'] else 'doubles'} in {mode['half_or_double_time']:.2f}"
+    return f"{'halves' if mode['stable'] else 'doubles'} in {mode['half_or_double_time']:.2f} s"
 
 
 def _table(title: str, rows: Sequence[tuple[str, str, str]]) -> Any:

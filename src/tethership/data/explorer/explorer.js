@@ -4,7 +4,7 @@ window.dash_clientside = Object.assign({}, window.dash_clientside, {
     follow(text, position) {
       const same = window.dash_clientside.no_update;
       const moved = window.dash_clientside.callback_context.triggered.map((one) => one.prop_id).join(" ");
-      if (moved.includes('"slider"')) {
+      if (moved.includes('"part":"slider"')) {
         const words = String(Number(Number(position).toPrecision(6)));
         return [Number(text) === Number(words) ? same : words, same];
       }
