@@ -64,7 +64,9 @@ def _placed(scenario: str, folder: Path | None) -> tuple[str, Path]:
 
 def _opened(address: str) -> bool:
     """Return whether a browser with a window was found and told to open the page."""
-    windowless = sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    windowless = sys.platform.startswith("linux") and not (
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )
     try:
         return not windowless and webbrowser.open(address)
     except (webbrowser.Error, OSError):

@@ -9,7 +9,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from tethership.errors import ConfigError, TethershipError
+from tethership.errors import TethershipError
 from tethership.explorer.choice import Choice
 from tethership.explorer.recipe import Span
 from tethership.explorer.worker import Stopped, Worker
@@ -194,15 +194,17 @@ class Desk:
 
     def _outcome(self, request: Request) -> dict[str, Any]:
         """Return how a request ended."""
-        progress: Callable[[str, float | None], None] = lambda text, share: self._note(request, text=text, share=share)
+
+        def progress(text: str, share: float | None) -> None:
+            self._note(request, text=text, share=share)
+
         try:
-            return {"status": "done", "text": "", "result": self.worker.run(request.job(), progress, self._told_to_stop)}
+            result = self.worker.run(request.job(), progress, self._told_to_stop)
         except Stopped:
             return {"status": "cancelled", "text": "cancelled"}
-        except ConfigError as error:
-            return {"status": "failed", "text": str(error)}
         except TethershipError as error:
             return {"status": "failed", "text": str(error)}
+        return {"status": "done", "text": "", "result": result}
 
     def _told_to_stop(self) -> bool:
         return self._stopping

@@ -15,7 +15,6 @@ HEADERS = {
     "Referrer-Policy": "no-referrer",
     "Cross-Origin-Resource-Policy": "same-origin",
     "Cross-Origin-Opener-Policy": "same-origin",
-    "Cache-Control": "no-store",
 }
 
 
@@ -62,8 +61,9 @@ def guard(server: Flask, port: int, scripts: list[str]) -> None:
     @server.after_request
     def _headers(response: Response) -> Response:
         for name, value in HEADERS.items():
-            if name != "Cache-Control" or request.path.startswith("/_dash-") and "component-suites" not in request.path:
-                response.headers[name] = value
+            response.headers[name] = value
+        if "component-suites" not in request.path:
+            response.headers["Cache-Control"] = "no-store"
         response.headers["Content-Security-Policy"] = policy
         return response
 

@@ -1,12 +1,12 @@
 """The interactive root locus with the chosen scenario's own modes marked and named. Depends on: plotly, view."""
 
-import json
 from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
 
 from tethership.analysis import Modes, Sweep
+from tethership.explorer.plain import plain_figure
 from tethership.view import style
 from tethership.view.interactive import interactive_root_locus
 from tethership.view.root_locus import SLOWEST
@@ -33,10 +33,11 @@ def locus_figure(found: Sweep, own: Modes | None) -> dict[str, Any]:
         Of the chosen scenario, which need not lie on the sweep; none without equilibrium.
     """
     figure = interactive_root_locus(found, "")
-    figure.data = [trace for trace in figure.data if trace.name != "reference"]
-    for axis in ("", "2") if own is not None else ():
-        figure.add_trace(_stars(own, axis))
-        _names(figure, found, own, axis)
+    figure.data = [trace for trace in list[Any](figure.data) if trace.name != "reference"]
+    if own is not None:
+        for axis in ("", "2"):
+            figure.add_trace(_stars(own, axis))
+            _names(figure, found, own, axis)
     figure.update_layout(
         title=None,
         height=HEIGHT,
@@ -44,7 +45,7 @@ def locus_figure(found: Sweep, own: Modes | None) -> dict[str, Any]:
         uirevision=f"{found.scenario.name} {', '.join(found.values)}",
         font={"color": style.INK},
     )
-    return json.loads(figure.to_json())
+    return plain_figure(figure)
 
 
 def _stars(own: Modes, axis: str) -> go.Scatter:

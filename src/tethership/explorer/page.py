@@ -14,10 +14,12 @@ VIEWS = {"trim": "Trim", "locus": "Root locus", "flight": "Flight"}
 POLL = 250
 """Time between two looks at work that goes on [ms]."""
 
-GRAPH = {"displaylogo": False, "responsive": True, "displayModeBar": "hover", "showTips": False}
+GRAPH: Any = {"displaylogo": False, "responsive": True, "displayModeBar": "hover", "showTips": False}
 """How plotly shows a figure."""
 
-FIRST = "Nothing is computed yet. The first time the programs are compiled, which takes seconds; then it is tenths of one."
+FIRST = (
+    "Nothing is computed yet. The first time the programs are compiled, which takes seconds; then it is tenths of one."
+)
 
 EMPTY = {"data": [], "layout": {"xaxis": {"visible": False}, "yaxis": {"visible": False}, "height": 120}}
 """A figure before there is one."""
@@ -98,7 +100,10 @@ def _header(name: str, names: Sequence[str]) -> html.Header:
             ),
             html.Button("Reset", id="reset", title="Back to the scenario's own numbers"),
             html.Div(
-                [html.Span("", id="state", role="status"), html.Div(html.Div(id="bar"), className="progress", id="line")],
+                [
+                    html.Span("", id="state", role="status"),
+                    html.Div(html.Div(id="bar"), className="progress", id="line"),
+                ],
                 className="state",
             ),
             html.Button("Cancel", id="cancel", disabled=True),

@@ -1,4 +1,4 @@
-"""The panel of numbers: groups of fields, each a text with its unit and, for the main ones, a slider. Depends on: dash."""
+"""The panel of numbers: fields in groups, texts with units and, for the main ones, sliders. Depends on: dash."""
 
 from typing import Any
 
@@ -49,8 +49,9 @@ def field(entry: Field) -> html.Div:
         ],
         className="row",
     )
+    place: Any = {"id": {"name": entry.name, "part": "field"}, "data-own": entry.text, "className": "field"}
     if entry.span is None:
-        return html.Div(row, className="field")
+        return html.Div(row, **place)
     low, high = entry.span
     slider = dcc.Slider(
         id={"name": entry.name, "part": "slider", "kind": "main"},
@@ -64,7 +65,7 @@ def field(entry: Field) -> html.Div:
         included=False,
         className="slider",
     )
-    return html.Div([row, slider], className="field")
+    return html.Div([row, slider], **place)
 
 
 def _step(width: float) -> float:

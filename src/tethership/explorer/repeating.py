@@ -52,4 +52,6 @@ def recipe(view: str, request: Request, known: Understanding) -> html.Details:
 
 def _copied(name: str, text: str, style: str) -> Any:
     """Return text that can be copied with a button."""
-    return html.Div([html.Pre(text, id=name), dcc.Clipboard(target_id=name, title="copy", className="copy")], className=style)
+    return html.Div(
+        [html.Pre(text, id=name), dcc.Clipboard(target_id=name, title="copy", className="copy")], className=style
+    )

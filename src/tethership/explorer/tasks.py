@@ -3,7 +3,6 @@
 Takes and returns plain data: numbers in SI, angles in degrees, figures as plotly's JSON.
 """
 
-import json
 import math
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -48,7 +47,8 @@ def compute(view: str, path: str, changes: Mapping[str, Any], options: Mapping[s
     """
     report("reading the scenario", None)
     scenario = load_scenario(path, changes)
-    return {"trim": _trim, "locus": _locus, "flight": _flight}[view](scenario, options, report)
+    work: Callable[..., dict[str, Any]] = {"trim": _trim, "locus": _locus, "flight": _flight}[view]
+    return work(scenario, options, report)
 
 
 def _trim(scenario: Scenario, options: Mapping[str, Any], report: Report) -> dict[str, Any]:
@@ -88,7 +88,7 @@ def _locus(scenario: Scenario, options: Mapping[str, Any], report: Report) -> di
     from tethership.analysis import TrimOutcome, linearize, sweep, trim
 
     name, points = options["name"], int(options["points"])
-    low, high = (converted(*options[end], options["unit"]) for end in ("low", "high"))
+    low, high = (converted(value, unit, options["unit"]) for value, unit in (options["low"], options["high"]))
     report(f"trimming and linearising {points} points", None)
     found = sweep(scenario, {name: np.linspace(low, high, points)})
     report("modes of the chosen scenario", None)
@@ -156,6 +156,7 @@ def _flight(scenario: Scenario, options: Mapping[str, Any], report: Report) -> d
     if flight.data.sizes["time"] < 2:
         raise ConfigError(f"the flight ended at its start: {flight.outcome.value}")
     report("drawing", 1.0)
+    from tethership.explorer.plain import plain_figure
     from tethership.view.interactive_histories import interactive_histories
 
     warnings = [] if not point.saturated else [f"{TrimOutcome.saturated.value} ({', '.join(point.saturated)})"]
@@ -175,5 +176,5 @@ def _flight(scenario: Scenario, options: Mapping[str, Any], report: Report) -> d
         "sas": flight.attributes["sas"],
         "steps": flight.attributes["steps"],
         "cables": len(scenario.config.cables),
-        "figure": json.loads(interactive_histories(flight, "").to_json()),
+        "figure": plain_figure(interactive_histories(flight, "").update_layout(margin_t=45)),
     }

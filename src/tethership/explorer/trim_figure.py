@@ -3,7 +3,6 @@
 Depends on: plotly, view, system.
 """
 
-import json
 from typing import Any
 
 import equinox as eqx
@@ -14,6 +13,7 @@ from jaxtyping import Array, Float
 from plotly.subplots import make_subplots
 
 from tethership.analysis import TrimPoint
+from tethership.explorer.plain import plain_figure
 from tethership.scenario import Scenario
 from tethership.spatial import rotation_matrix
 from tethership.system import State, TetheredAirship
@@ -31,15 +31,15 @@ LACKING = "#D55E00"
 
 
 @eqx.filter_jit
-def _curves(plant: TetheredAirship, state: State) -> Float[Array, "cables points 3"]:
+def _curves(plant: TetheredAirship, state: State) -> Float[Array, "cables 25 3"]:
     """Return the cables at a state, anchor first [m]."""
     plant = plant.in_mean_air()
     lengths = plant.initial_lengths()
     states = plant.cable_states(jnp.zeros(()), state, lengths)
-    rows = [
-        cable.anchor + cable.law.shape(now.span, lengths[i], now.load, jnp.linspace(0.0, 1.0, CURVE_POINTS) * lengths[i])
-        for i, (cable, now) in enumerate(zip(plant.cables, states, strict=True))
-    ]
+    rows = []
+    for index, (cable, now) in enumerate(zip(plant.cables, states, strict=True)):
+        arc = jnp.linspace(0.0, 1.0, CURVE_POINTS) * lengths[index]
+        rows.append(cable.anchor + cable.law.shape(now.span, lengths[index], now.load, arc))
     return jnp.stack(rows) if rows else jnp.zeros((0, CURVE_POINTS, 3))
 
 
@@ -57,8 +57,8 @@ def trim_figure(scenario: Scenario, point: TrimPoint) -> dict[str, Any]:
         rows=1,
         cols=3,
         subplot_titles=("from the east", "from above", "throttle"),
-        column_widths=[0.37, 0.37, 0.26],
-        horizontal_spacing=0.08,
+        column_widths=[0.38, 0.36, 0.26],
+        horizontal_spacing=0.1,
     )
     curves = np.asarray(_curves(scenario.system, point.state))
     for column, view in ((1, FROM_EAST), (2, FROM_TOP)):
@@ -71,12 +71,10 @@ def trim_figure(scenario: Scenario, point: TrimPoint) -> dict[str, Any]:
         margin={"l": 55, "r": 15, "t": 30, "b": 45},
         font={"color": style.INK, "size": 12},
     )
-    return json.loads(figure.to_json())
+    return plain_figure(figure)
 
 
-def _seen(
-    figure: go.Figure, column: int, view: View, scenario: Scenario, point: TrimPoint, curves: np.ndarray
-) -> None:
+def _seen(figure: go.Figure, column: int, view: View, scenario: Scenario, point: TrimPoint, curves: np.ndarray) -> None:
     """Draw ship, cables and ground from one side, with equal scales."""
     position, rotation = np.asarray(point.state.position), np.asarray(rotation_matrix(point.state.attitude))
     for outline in ship_outlines(ship_shape(scenario.config.vehicle), position, rotation, view):
@@ -86,7 +84,7 @@ def _seen(
         _line(figure, column, flat, style.cable_colour(index), 2.0)
         _mark(figure, column, flat[0])
     if view.shows_altitude:
-        figure.add_hline(y=-(scenario.config.ground.anchor_height or 0.0), line_color=style.BETWEEN, row=1, col=column)
+        figure.add_hline(y=-(scenario.config.ground.anchor_height or 0.0), line_color=style.BETWEEN, **_at(column))
     figure.update_xaxes(title_text=view.labels[0], zeroline=False, row=1, col=column)
     scale = {"scaleanchor": f"x{'' if column == 1 else column}", "scaleratio": 1}
     figure.update_yaxes(title_text=view.labels[1], zeroline=False, **scale, row=1, col=column)
@@ -120,7 +118,7 @@ def _throttles(figure: go.Figure, scenario: Scenario, point: TrimPoint) -> None:
     colours = [LACKING if name in point.saturated else style.CABLES[0] for name in names]
     bars = go.Bar(
         x=values.tolist(),
-        y=[name.replace("_", " ") for name in names],
+        y=[name.replace("_", "<br>") for name in names],
         orientation="h",
         marker={"color": colours},
         hovertemplate="%{y}: %{x:.4f} of nominal<extra></extra>",
@@ -130,4 +128,9 @@ def _throttles(figure: go.Figure, scenario: Scenario, point: TrimPoint) -> None:
     figure.update_xaxes(range=[-reach, reach], title_text="of nominal thrust [-]", row=1, col=3)
     figure.update_yaxes(autorange="reversed", row=1, col=3)
     for limit in (-1.0, 1.0):
-        figure.add_vline(x=limit, line_color=style.INK, line_dash="dash", line_width=1, row=1, col=3)
+        figure.add_vline(x=limit, line_color=style.INK, line_dash="dash", line_width=1, **_at(3))
+
+
+def _at(column: int) -> dict[str, Any]:
+    """Return the place of a panel as plotly's shapes take it."""
+    return {"row": 1, "col": column}

@@ -86,7 +86,7 @@ class Understanding:
         return Span(parameter.name, *ends, count, parameter.unit)
 
     def usual_span(self, name: str, scenario: str) -> tuple[str, str, str, str]:
-        """Return ends and points that a locus over a parameter starts with, as typed, and the unit; errors as `base`."""
+        """Return the ends, points and unit that a locus over a parameter starts with; errors as `base`."""
         base = self.base(scenario)
         parameter = find_parameter(known_parameters(base.config), name, scenario)
         low, high, points = USUAL.get(name) or (*_around(parameter), 13)
@@ -119,8 +119,6 @@ class Understanding:
             return request.choice.scenario
         path = Path(request.path)
         return str(path.relative_to(Path.cwd())) if path.is_relative_to(Path.cwd()) else str(path)
-
-
 
 
 def _around(parameter: Parameter) -> tuple[float, float]:

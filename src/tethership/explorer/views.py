@@ -110,7 +110,9 @@ def locus_rest(result: dict[str, Any]) -> Any:
         [
             _grid("Modes of the chosen scenario (stars)", header, rows, {0}),
             html.H3("Along the sweep"),
-            html.Ul([html.Li(text) for text in happenings] or html.Li("no coalescence, splitting or loss of stability")),
+            html.Ul(
+                [html.Li(text) for text in happenings] or html.Li("no coalescence, splitting or loss of stability")
+            ),
         ]
     )
 
@@ -130,7 +132,7 @@ def flight_head(result: dict[str, Any]) -> Any:
             for limit, seconds in zip(result["limits"], found["seconds_above"], strict=True)
         ],
         ("slowest rewind rate", f"{found['rewind_rate_min']:.3f}", "m/s"),
-        ("pitch, root mean square", f"{found['theta_rms']:.2f}", "°"),
+        ("pitch, RMS", f"{found['theta_rms']:.2f}", "°"),
         ("duty cycle ADC", f"{found['ADC']:.3f}", "1/s"),
         ("control energy E", f"{found['E']:.3f}", ""),
         ("time saturated", f"{found['saturated_seconds']:.2f}", "s"),

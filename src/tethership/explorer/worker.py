@@ -8,6 +8,7 @@ import os
 import signal
 import threading
 from collections.abc import Callable
+from functools import partial
 from multiprocessing.connection import Connection
 from typing import Any
 
@@ -140,10 +141,10 @@ def _serve(pipe: Connection, stop: Any) -> None:
 
     while True:
         try:
-            job = pipe.recv()
+            view, path, changes, options = pipe.recv()
         except (EOFError, OSError):
             return
-        pipe.send(_done(lambda job=job: compute(*job, report)))
+        pipe.send(_done(partial(compute, view, path, changes, options, report)))
 
 
 def _done(work: Callable[[], Any]) -> tuple[str, Any]:
@@ -155,7 +156,9 @@ def _done(work: Callable[[], Any]) -> tuple[str, Any]:
     except ConfigError as error:
         return "wrong", _line(error)
     except Exception as error:
-        return "failed", _line(error) if isinstance(error, TethershipError) else f"{type(error).__name__}: {_line(error)}"
+        return "failed", _line(error) if isinstance(
+            error, TethershipError
+        ) else f"{type(error).__name__}: {_line(error)}"
 
 
 def _line(error: Exception) -> str:

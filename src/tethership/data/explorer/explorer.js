@@ -11,6 +11,9 @@ window.dash_clientside = Object.assign({}, window.dash_clientside, {
       const number = String(text).trim() === "" ? NaN : Number(text);
       return [same, Number.isFinite(number) && number !== position ? number : same];
     },
+    mark(texts, own) {
+      return own.map((text, index) => (String(texts[index] ?? "").trim() === text ? "field" : "field changed"));
+    },
     show(view) {
       return ["trim", "locus", "flight"].map((name) => (name === view ? {} : { display: "none" }));
     },
