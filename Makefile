@@ -38,6 +38,7 @@ figures: $(VENV)/.installed
 	cp out/readme/docking.png docs/docking.png
 	$(BIN)/tethership sweep --over wind=6:12:13 --out out/readme
 	cp out/readme/root_locus.png docs/root_locus.png
+	@$(BIN)/python -c 'import playwright' 2>/dev/null && $(BIN)/python docs/make_explorer.py || echo 'no Playwright: docs/explorer.png is left as it is'
 
 validation: $(VENV)/.installed
 	$(BIN)/python docs/validation/make_linear.py

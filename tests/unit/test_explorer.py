@@ -5,6 +5,7 @@ If one of these failed, a page would show numbers that nobody can repeat, or wou
 
 import json
 import shlex
+import socket
 import sys
 import threading
 import time
@@ -198,7 +199,8 @@ def test_fields_show_the_scenarios_own_numbers():
 
 
 @pytest.mark.parametrize(
-    "name", ["../outside.toml", "/etc/passwd.toml", "sub/x.toml", "..", ".hidden.toml", "x.TOML", "a\\b.toml", "link.toml"]
+    "name",
+    ["../outside.toml", "/etc/passwd.toml", "sub/x.toml", "..", ".hidden.toml", "x.TOML", "a\\b.toml", "link.toml"],
 )
 def test_nothing_outside_the_folder_is_read_or_written(tmp_path, name):
     inside = tmp_path / "inside"
@@ -299,6 +301,15 @@ def test_two_pages_do_not_take_each_others_work(known, desk):
     until(lambda: desk.ask("me", mine).status == desk.ask("other", other).status == "done")
 
 
+def test_work_of_a_page_that_was_closed_makes_room(known, desk, monkeypatch):
+    monkeypatch.setattr("tethership.explorer.desk.GONE", 0.05)
+    closed, other = (known.request("trim", Form("docking", {"wind.speed": str(speed)}), OVER) for speed in (7, 8))
+    desk.ask("closed", closed)
+    until(lambda: desk.find(lambda one: one == closed) and desk.worker.jobs)
+    until(lambda: desk.ask("me", other).text == "working")
+    assert desk.find(lambda one: one == closed) is None
+
+
 def test_cancelled_and_failed_work_stays_so_until_it_is_asked_again(known, desk):
     request = known.request("flight", Form("docking", {}), OVER)
     desk.ask("me", request)
@@ -311,3 +322,45 @@ def test_cancelled_and_failed_work_stays_so_until_it_is_asked_again(known, desk)
     bad = known.request("trim", Form("docking", {"wind.speed": "13"}), OVER)
     until(lambda: desk.ask("me", bad).status == "failed")
     assert desk.ask("me", bad).text == "no equilibrium"
+
+
+@pytest.fixture
+def refusal(monkeypatch, capsys, tmp_path):
+    """Return the one line with which the command refuses."""
+    monkeypatch.chdir(tmp_path)
+
+    def call(*flags):
+        monkeypatch.setattr(sys, "argv", ["tethership", "explore", "--no-open", *flags])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        out, err = capsys.readouterr()
+        assert stop.value.code == 2
+        assert out == ""
+        assert err.count("\n") == 1
+        return err
+
+    return call
+
+
+def test_a_port_in_use_is_said(refusal):
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        port = str(other.getsockname()[1])
+        assert f"port {port} is in use; choose another with --port, or --port 0" in refusal("--port", port)
+
+
+@pytest.mark.parametrize(
+    ("flags", "message"),
+    [
+        (("--host", "0.0.0.0"), "to this machine alone"),
+        (("--folder", "nowhere"), "is no folder"),
+        (("../mine.toml", "--folder", "."), "is not in --folder"),
+        (("dokcing",), "no scenario 'dokcing'; packaged: aerostat"),
+        (("gone.toml",), "cannot read gone.toml"),
+        (("--port", "70000"), "--port 70000 is no port"),
+        (("--port", "x"), "--port"),
+    ],
+)
+def test_wrong_flags_are_said(refusal, flags, message):
+    assert message in refusal(*flags)

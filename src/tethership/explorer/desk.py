@@ -17,6 +17,12 @@ from tethership.explorer.worker import Stopped, Worker
 KEPT = 40
 """Results that are kept, newest."""
 
+GONE = 3.0
+"""How long nobody may ask after running work while other work waits: its page was closed [s]."""
+
+FORGOTTEN = 150.0
+"""The same while nothing waits; browsers let a hidden page ask only once a minute [s]."""
+
 LAST = {"trim": 0, "locus": 1, "flight": 2}
 """Order in which waiting views are computed: the quick ones first."""
 
@@ -96,6 +102,7 @@ class Desk:
         self.worker = worker
         self._standings: OrderedDict[Request, Standing] = OrderedDict()
         self._wanted: dict[tuple[str, str], Request] = {}
+        self._seen: dict[Request, float] = {}
         self._running: Request | None = None
         self._stopping = False
         self._closed = False
@@ -108,6 +115,7 @@ class Desk:
         with self._changed:
             former = self._wanted.get((client, request.view))
             self._wanted[client, request.view] = request
+            self._seen[request] = time.monotonic()
             if former is not None and former != request:
                 self._drop(former)
             standing = self._standings.get(request)
@@ -162,6 +170,7 @@ class Desk:
         ended = [request for request, standing in self._standings.items() if not standing.busy]
         for request in ended[: max(0, len(ended) - KEPT)]:
             del self._standings[request]
+        self._seen = {request: seen for request, seen in self._seen.items() if request in self._standings}
 
     def _next(self) -> Request | None:
         """Wait for work and return it; None where the desk closes."""
@@ -207,4 +216,13 @@ class Desk:
         return {"status": "done", "text": "", "result": result}
 
     def _told_to_stop(self) -> bool:
-        return self._stopping
+        """Return whether the running request is to end: told to, or its page has gone."""
+        with self._changed:
+            running = self._running
+            if running is not None and not self._stopping:
+                waited_for = any(standing.status == "waiting" for standing in self._standings.values())
+                silence = time.monotonic() - self._seen.get(running, 0.0)
+                if silence > (GONE if waited_for else FORGOTTEN):
+                    self._standings.pop(running, None)
+                    self._stopping = True
+            return self._stopping
