@@ -356,7 +356,7 @@ def test_a_port_in_use_is_said(refusal):
         (("--host", "0.0.0.0"), "to this machine alone"),
         (("--folder", "nowhere"), "is no folder"),
         (("../mine.toml", "--folder", "."), "is not in --folder"),
-        (("dokcing",), "no scenario 'dokcing'; packaged: aerostat"),
+        (("dock",), "no scenario 'dock'; packaged: aerostat"),
         (("gone.toml",), "cannot read gone.toml"),
         (("--port", "70000"), "--port 70000 is no port"),
         (("--port", "x"), "--port"),
