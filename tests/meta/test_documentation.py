@@ -27,7 +27,8 @@ PAGES = sorted(path for path in (ROOT / "docs").rglob("*.md") if not path.name.e
 WRITTEN = [ROOT / "README.md", *(path for path in PAGES if path.parent.name not in ("gallery", "decisions"))]
 
 LONG = {"reproduce", "identify", "tune", "campaign", "sweep", "explore"}
-"""Commands that the README shows as they are used, or that serve until they are ended; the pages of the guide run small ones."""
+"""Commands that the README shows as they are used, or that serve until they are
+ended; the pages of the guide run small ones."""
 
 
 def run_commands(example: Example) -> None:
