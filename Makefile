@@ -40,6 +40,7 @@ figures: $(VENV)/.installed-dev
 	$(BIN)/python docs/make_replay_picture.py out/readme/replay.html docs/replay.png # needs Chromium, playwright
 	$(BIN)/tethership sweep --over wind=6:12:13 --out out/readme
 	cp out/readme/root_locus.png docs/root_locus.png
+	@$(BIN)/python -c 'import playwright' 2>/dev/null && $(BIN)/python docs/make_explorer.py || echo 'no Playwright: docs/explorer.png is left as it is'
 
 validation: $(VENV)/.installed
 	$(BIN)/python docs/validation/make_linear.py

@@ -3,6 +3,7 @@
 ::
 
                      cli                                   commands
+                  explorer                                 a local page: numbers are changed, views follow
                     view                                   plots: draws the data it is given
                 reproduction                               the paper's figures and claims; returns data
                   fitting                                  identification, tuning
@@ -109,6 +110,7 @@ _PARTS = (
     "analysis",
     "campaign",
     "control",
+    "explorer",
     "physics",
     "reproduction",
     "results",

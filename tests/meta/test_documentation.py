@@ -26,8 +26,9 @@ SOURCE = ROOT / "src"
 PAGES = sorted(path for path in (ROOT / "docs").rglob("*.md") if not path.name.endswith(".in.md"))
 WRITTEN = [ROOT / "README.md", *(path for path in PAGES if path.parent.name not in ("gallery", "decisions"))]
 
-LONG = {"reproduce", "identify", "tune", "campaign", "sweep"}
-"""Commands that the README shows as they are used; the pages of the guide run small ones."""
+LONG = {"reproduce", "identify", "tune", "campaign", "sweep", "explore"}
+"""Commands that the README shows as they are used, or that serve until they are
+ended; the pages of the guide run small ones."""
 
 
 def run_commands(example: Example) -> None:

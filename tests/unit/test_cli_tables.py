@@ -8,8 +8,8 @@ import sys
 
 import pytest
 
-from tethership.cli.common import NUMBER_WITH_UNIT
 from tethership.cli.tables import Row, print_table, write_rows
+from tethership.scenario.quantity import NUMBER_WITH_UNIT
 
 COMMAND = [sys.executable, "-m", "tethership"]
 

@@ -6,7 +6,21 @@ from typing import Annotated
 import typer
 
 from tethership._version import __version__
-from tethership.cli import campaign, dock, files, identify, listing, modes, reproduce, sweep, tension, trim, tune, view
+from tethership.cli import (
+    campaign,
+    dock,
+    explore,
+    files,
+    identify,
+    listing,
+    modes,
+    reproduce,
+    sweep,
+    tension,
+    trim,
+    tune,
+    view,
+)
 from tethership.cli.common import NO_ANSWER, WRONG_INPUT
 from tethership.errors import ConfigError, SolveError
 
@@ -45,6 +59,7 @@ app.command("tune", epilog=tune.EXAMPLE)(tune.tune)
 app.command("reproduce", epilog=reproduce.EXAMPLE)(reproduce.reproduce)
 app.command("campaign", epilog=campaign.EXAMPLE)(campaign.campaign)
 app.command("view", epilog=view.EXAMPLE)(view.view)
+app.command("explore", epilog=explore.EXAMPLE)(explore.explore)
 app.command("list", epilog=listing.EXAMPLE)(listing.list_)
 app.command("validate", epilog=files.VALIDATE_EXAMPLE)(files.validate)
 app.command("new", epilog=files.NEW_EXAMPLE)(files.new)

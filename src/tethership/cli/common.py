@@ -3,7 +3,6 @@
 import contextlib
 import json
 import math
-import re
 import sys
 import time
 from collections.abc import Iterator
@@ -15,11 +14,7 @@ import typer
 from tethership.cli.completion import complete_formulation, complete_parameter, complete_scenario
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario, load_scenario
-
-NUMBER_WITH_UNIT = re.compile(
-    r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>(?![eE][-+]?\d)[A-Za-z].*)"
-)
-"""A number with a unit, as in `270deg` or `12 m/s`."""
+from tethership.scenario.quantity import NUMBER_WITH_UNIT
 
 WRONG_INPUT = 2
 """Exit code for wrong input."""

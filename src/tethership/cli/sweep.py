@@ -11,7 +11,6 @@ import typer
 
 from tethership.cli.common import (
     NO_ANSWER,
-    NUMBER_WITH_UNIT,
     FormulationOption,
     JsonOption,
     OutOption,
@@ -29,6 +28,7 @@ from tethership.cli.completion import complete_parameter
 from tethership.cli.tables import CsvOption, writable_csv, write_csv
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario
+from tethership.scenario.quantity import NUMBER_WITH_UNIT
 
 if TYPE_CHECKING:
     from tethership.analysis import Sweep

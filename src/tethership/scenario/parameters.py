@@ -219,15 +219,20 @@ def _document_at(scenario: Scenario, parameters: Sequence[Parameter], values: Se
     config = with_values(scenario.config, groups, [float(value) for value in values])
     document = copy.deepcopy(scenario.document)
     for leaf in (leaf for parameter in parameters for leaf in parameter.leaves):
-        table = leaf.key.split(".")[0]
-        kind = getattr(getattr(config, table), "model", None)
-        if kind is not None and table not in document:
-            document[table] = {"model": kind}  # a table left to its defaults: its kind must be said with its numbers
-        change(document, leaf.key, _listed(_value_at(config, leaf.key)), scenario.name)
+        kind = missing_kind(scenario, leaf.key)
+        if kind is not None:
+            document.setdefault(leaf.key.split(".")[0], {"model": kind})
+        change(document, leaf.key, _listed(value_at(config, leaf.key)), scenario.name)
     return document
 
 
-def _value_at(config: ScenarioConfig, key: str) -> Any:
+def missing_kind(scenario: Scenario, key: str) -> str | None:
+    """Return what must be said as `model` of a key's table where the file left that table to its defaults."""
+    table = key.split(".")[0]
+    return None if table in scenario.document else getattr(getattr(scenario.config, table), "model", None)
+
+
+def value_at(config: ScenarioConfig, key: str) -> Any:
     """Return the value of a configuration by its dotted key; items of lists by name or number."""
     place: Any = config
     for step in key.split("."):

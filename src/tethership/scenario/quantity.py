@@ -6,6 +6,7 @@ Depends on: pint for the units, pydantic for where they stand, JAX for tables as
 import dataclasses
 import functools
 import math
+import re
 from collections.abc import Iterable
 from typing import Annotated, Any, Self
 
@@ -17,6 +18,11 @@ from pydantic import ConfigDict, GetCoreSchemaHandler, model_validator
 from pydantic_core import core_schema
 
 from tethership.errors import suggestion
+
+NUMBER_WITH_UNIT = re.compile(
+    r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>(?![eE][-+]?\d)[A-Za-z].*)"
+)
+"""A number with a unit as it is typed, `270deg` or `12 m/s`; 1e5 has none."""
 
 SI_UNIT = "SI"
 """Unit name for a number that is already in the field's SI unit, as an override gives it."""

@@ -1,0 +1,73 @@
+"""`tethership explore`: a local page on which numbers are changed and trim, root locus and flight follow."""
+
+import os
+import sys
+import webbrowser
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tethership.cli.common import JsonOption, ScenarioArgument, print_json
+from tethership.errors import ConfigError
+
+EXAMPLE = "Example: tethership explore docking --port 8050"
+
+LOOPBACK = ("127.0.0.1", "localhost")
+
+
+def explore(
+    scenario: ScenarioArgument = "docking",
+    port: Annotated[int, typer.Option(help="Where the page is served; 0 for a free port.")] = 8050,
+    host: Annotated[str, typer.Option(help="Only this machine: 127.0.0.1 or localhost.")] = "127.0.0.1",
+    folder: Annotated[
+        Path | None,
+        typer.Option(help="Scenario files are read and saved there, nowhere else. Default: the scenario's, or here."),
+    ] = None,
+    no_open: Annotated[bool, typer.Option("--no-open", help="Do not open a browser.")] = False,
+    json: JsonOption = False,
+) -> None:
+    """Serve a local page: change numbers, see trim, root locus and flight; Ctrl-C ends it.
+
+    With --json one object with the address is printed once the page is served.
+    """
+    if host not in LOOPBACK:
+        raise ConfigError(f"--host {host}: the page is served to this machine alone; leave --host out")
+    name, place = _placed(scenario, folder)
+    from tethership.explorer.server import Explorer, serve_until_signal
+
+    explorer = Explorer(name, place, port)
+
+    def ready() -> None:
+        if json:
+            print_json({"address": explorer.address, "folder": str(explorer.folder), "pid": os.getpid()})
+        else:
+            typer.echo(f"tethership explore: {explorer.address} (files in {explorer.folder}; Ctrl-C ends it)")
+        sys.stdout.flush()
+        if not no_open and not _opened(explorer.address):
+            typer.echo(f"tethership: no browser was found; open {explorer.address} yourself", err=True)
+
+    serve_until_signal(explorer, ready)
+
+
+def _placed(scenario: str, folder: Path | None) -> tuple[str, Path]:
+    """Return the scenario's name and its folder: a file must lie in the folder."""
+    if not scenario.endswith(".toml"):
+        return scenario, Path() if folder is None else folder
+    path = Path(scenario)
+    if folder is None:
+        return path.name, path.parent
+    if path.resolve().parent != folder.resolve():
+        raise ConfigError(f"{scenario} is not in --folder {folder}; leave --folder out or move the file there")
+    return path.name, folder
+
+
+def _opened(address: str) -> bool:
+    """Return whether a browser with a window was found and told to open the page."""
+    windowless = sys.platform.startswith("linux") and not (
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )
+    try:
+        return not windowless and webbrowser.open(address)
+    except (webbrowser.Error, OSError):
+        return False

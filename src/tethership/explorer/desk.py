@@ -1,0 +1,228 @@
+"""Requests and what became of them: newest first, one at a time, every result under its own request.
+
+Depends on: explorer.worker.
+"""
+
+import threading
+import time
+from collections import OrderedDict
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from tethership.errors import TethershipError
+from tethership.explorer.choice import Choice
+from tethership.explorer.recipe import Span
+from tethership.explorer.worker import Stopped, Worker
+
+KEPT = 40
+"""Results that are kept, newest."""
+
+GONE = 3.0
+"""How long nobody may ask after running work while other work waits: its page was closed [s]."""
+
+FORGOTTEN = 150.0
+"""The same while nothing waits; browsers let a hidden page ask only once a minute [s]."""
+
+LAST = {"trim": 0, "locus": 1, "flight": 2}
+"""Order in which waiting views are computed: the quick ones first."""
+
+
+class Request(NamedTuple):
+    """What a view is to show.
+
+    Attributes
+    ----------
+    view : str
+        trim, locus or flight.
+    path : str
+        Scenario, as `load_scenario` takes it.
+    choice : Choice
+        What was changed.
+    span : Span, optional
+        Of a locus.
+    """
+
+    view: str
+    path: str
+    choice: Choice
+    span: Span | None = None
+
+    def job(self) -> tuple[Any, ...]:
+        """Return the arguments of `tasks.compute`."""
+        options = {}
+        if self.span is not None:
+            options = self.span._asdict() | {"unit": self.span.si_unit}
+        return self.view, self.path, self.choice.values, options
+
+
+class Standing(NamedTuple):
+    """How a request stands.
+
+    Attributes
+    ----------
+    request : Request
+    status : str
+        waiting, running, done, failed, cancelled.
+    text : str
+        What is being done, or why it failed.
+    share : float, optional
+        Part that is done, where known.
+    begun : float
+        When it was asked for, or begun [s, monotonic].
+    seconds : float
+        How long it took [s]; only of what has ended.
+    result : Any
+        Of what is done.
+    """
+
+    request: Request
+    status: str
+    text: str = ""
+    share: float | None = None
+    begun: float = 0.0
+    seconds: float = 0.0
+    result: Any = None
+
+    @property
+    def busy(self) -> bool:
+        """Whether it has not ended."""
+        return self.status in ("waiting", "running")
+
+
+class Desk:
+    """Takes requests and has them computed one after the other; safe to use from any thread.
+
+    Parameters
+    ----------
+    worker : Worker
+        Computes; a stand-in in tests.
+    """
+
+    def __init__(self, worker: Worker) -> None:
+        self.worker = worker
+        self._standings: OrderedDict[Request, Standing] = OrderedDict()
+        self._wanted: dict[tuple[str, str], Request] = {}
+        self._seen: dict[Request, float] = {}
+        self._running: Request | None = None
+        self._stopping = False
+        self._closed = False
+        self._changed = threading.Condition()
+        self._thread = threading.Thread(target=self._work, name="tethership-desk", daemon=True)
+        self._thread.start()
+
+    def ask(self, client: str, request: Request) -> Standing:
+        """Return how a request stands; a new one waits, and replaces the client's earlier one of the same view."""
+        with self._changed:
+            former = self._wanted.get((client, request.view))
+            self._wanted[client, request.view] = request
+            self._seen[request] = time.monotonic()
+            if former is not None and former != request:
+                self._drop(former)
+            standing = self._standings.get(request)
+            if standing is None:
+                standing = Standing(request, "waiting", "waiting", begun=time.monotonic())
+                self._standings[request] = standing
+                self._trim_kept()
+                self._changed.notify_all()
+            return standing
+
+    def cancel(self, client: str) -> None:
+        """Cancel all that a client waits for."""
+        with self._changed:
+            for (owner, _), request in self._wanted.items():
+                standing = self._standings.get(request)
+                if owner == client and standing is not None and standing.busy:
+                    self._standings[request] = standing._replace(
+                        status="cancelled", text="cancelled", seconds=time.monotonic() - standing.begun
+                    )
+                    self._stopping |= request == self._running
+            self._changed.notify_all()
+
+    def forget(self, request: Request) -> None:
+        """Forget what has ended, so that asking again computes again."""
+        with self._changed:
+            if request in self._standings and not self._standings[request].busy:
+                del self._standings[request]
+
+    def find(self, wanted: Callable[[Request], bool]) -> Request | None:
+        """Return a request that is kept and wanted, if there is one."""
+        with self._changed:
+            return next(filter(wanted, self._standings), None)
+
+    def close(self) -> None:
+        """Stop everything and end the computing process."""
+        with self._changed:
+            self._closed = self._stopping = True
+            self._changed.notify_all()
+        self.worker.close()
+        self._thread.join(5.0)
+
+    def _drop(self, request: Request) -> None:
+        """Let go of a request that nobody waits for any more."""
+        standing = self._standings.get(request)
+        if standing is None or not standing.busy or request in self._wanted.values():
+            return
+        del self._standings[request]
+        self._stopping |= request == self._running
+
+    def _trim_kept(self) -> None:
+        """Keep only the newest results."""
+        ended = [request for request, standing in self._standings.items() if not standing.busy]
+        for request in ended[: max(0, len(ended) - KEPT)]:
+            del self._standings[request]
+        self._seen = {request: seen for request, seen in self._seen.items() if request in self._standings}
+
+    def _next(self) -> Request | None:
+        """Wait for work and return it; None where the desk closes."""
+        with self._changed:
+            while not self._closed:
+                waiting = [r for r, s in self._standings.items() if s.status == "waiting"]
+                if waiting:
+                    self._running = min(waiting, key=lambda request: LAST[request.view])
+                    self._stopping = False
+                    self._note(self._running, status="running", text="starting", begun=time.monotonic())
+                    return self._running
+                self._changed.wait()
+        return None
+
+    def _note(self, request: Request, **entries: Any) -> None:
+        """Write down how a request stands, unless it was cancelled or dropped meanwhile."""
+        with self._changed:
+            standing = self._standings.get(request)
+            if standing is not None and standing.busy:
+                self._standings[request] = standing._replace(**entries)
+
+    def _work(self) -> None:
+        """Compute requests until the desk closes."""
+        while (request := self._next()) is not None:
+            begun = time.monotonic()
+            ended = self._outcome(request)
+            self._note(request, seconds=time.monotonic() - begun, share=None, **ended)
+            with self._changed:
+                self._running = None
+
+    def _outcome(self, request: Request) -> dict[str, Any]:
+        """Return how a request ended."""
+
+        def progress(text: str, share: float | None) -> None:
+            self._note(request, text=text, share=share)
+
+        try:
+            result = self.worker.run(request.job(), progress, self._told_to_stop)
+        except Stopped:
+            return {"status": "cancelled", "text": "cancelled"}
+        except TethershipError as error:
+            return {"status": "failed", "text": str(error)}
+        return {"status": "done", "text": "", "result": result}
+
+    def _told_to_stop(self) -> bool:
+        """Return whether the running request is to end: told to, or its page has gone."""
+        with self._changed:
+            running = self._running
+            if running is not None and not self._stopping:
+                waited_for = any(standing.status == "waiting" for standing in self._standings.values())
+                silence = time.monotonic() - self._seen.get(running, 0.0)
+                if silence > (GONE if waited_for else FORGOTTEN):
+                    self._standings.pop(running, None)
+                    self._stopping = True
+            return self._stopping

@@ -1,0 +1,144 @@
+"""The page: header with the state, panel of numbers, three views. Depends on: dash, explorer.panel."""
+
+import uuid
+from collections.abc import Sequence
+from typing import Any
+
+from dash import dcc, html
+
+from tethership.explorer.panel import panel
+from tethership.scenario import Scenario
+
+VIEWS = {"trim": "Trim", "locus": "Root locus", "flight": "Flight"}
+
+POLL = 250
+"""Time between two looks at work that goes on [ms]."""
+
+GRAPH: Any = {"displaylogo": False, "responsive": True, "displayModeBar": "hover", "showTips": False}
+"""How plotly shows a figure."""
+
+FIRST = (
+    "Nothing is computed yet. The first time the programs are compiled, which takes seconds; then it is tenths of one."
+)
+
+EMPTY = {"data": [], "layout": {"xaxis": {"visible": False}, "yaxis": {"visible": False}, "height": 120}}
+"""A figure before there is one."""
+
+
+def page(scenario: Scenario, name: str, names: Sequence[str], folder: str, version: str) -> html.Div:
+    """Return the page as it is first served.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Chosen at first.
+    name : str
+        Its name.
+    names : sequence of str
+        Scenarios that can be chosen.
+    folder : str
+        Where files are read and saved.
+    version : str
+        Of the package.
+    """
+    return html.Div(
+        [
+            dcc.Store(id="client", data=uuid.uuid4().hex),
+            dcc.Store(id="shown", data={}),
+            dcc.Interval(id="tick", interval=POLL, disabled=False),
+            _header(name, names),
+            html.Div(
+                [
+                    html.Aside(
+                        [
+                            html.Div(panel(scenario), id="panel"),
+                            html.Details(
+                                [
+                                    html.Summary("Any other number"),
+                                    dcc.Dropdown(
+                                        id="more",
+                                        options=[],
+                                        placeholder="dotted name, e.g. vehicle.fins.*.area",
+                                        searchable=True,
+                                        clearable=True,
+                                        value=None,
+                                    ),
+                                    html.Div([], id="extra"),
+                                ],
+                                className="group",
+                            ),
+                        ],
+                        className="panel",
+                    ),
+                    html.Main(
+                        [
+                            dcc.RadioItems(
+                                id="tab",
+                                value="trim",
+                                options=[{"label": words, "value": view} for view, words in VIEWS.items()],
+                                className="tabs",
+                            ),
+                            html.Div("", id="trouble", className="trouble", role="alert"),
+                            *(_view(view) for view in VIEWS),
+                        ]
+                    ),
+                ],
+                className="body",
+            ),
+            html.Footer(f"tethership {version} · files are read from and saved in {folder}"),
+        ]
+    )
+
+
+def _header(name: str, names: Sequence[str]) -> html.Header:
+    return html.Header(
+        [
+            html.H1("tethership"),
+            html.Label("Scenario", htmlFor="scenario", className="scenario-label"),
+            dcc.Dropdown(
+                id="scenario", options=list(names), value=name, clearable=False, searchable=False, className="scenario"
+            ),
+            html.Button("Reset", id="reset", title="Back to the scenario's own numbers"),
+            html.Div(
+                [
+                    html.Span("", id="state", role="status"),
+                    html.Div(html.Div(id="bar"), className="progress", id="line"),
+                ],
+                className="state",
+            ),
+            html.Button("Cancel", id="cancel", disabled=True),
+            html.Button("Compute again", id="again", disabled=True),
+        ]
+    )
+
+
+def _view(view: str) -> html.Section:
+    """Return the place of a view: options, what the result says, its figure, the rest, and how to repeat it."""
+    options = [_span()] if view == "locus" else []
+    return html.Section(
+        [
+            *options,
+            html.Div(
+                [
+                    html.Div(html.P(FIRST, className="asked"), id={"head": view}),
+                    dcc.Graph(id={"figure": view}, figure=EMPTY, config=GRAPH, className="figure"),
+                    html.Div([], id={"rest": view}),
+                ],
+                id={"view": view},
+                className="view",
+            ),
+            html.Div([], id={"recipe": view}),
+        ],
+        id={"section": view},
+        style={} if view == "trim" else {"display": "none"},
+    )
+
+
+def _span() -> html.Div:
+    """Return what the root locus runs over."""
+    entries: list[Any] = [html.Label("over", htmlFor="over")]
+    entries.append(dcc.Dropdown(id="over", options=[], value="wind.speed", clearable=False, className="over"))
+    for name, words in (("low", "from"), ("high", "to"), ("points", "points")):
+        entries += [html.Label(words), dcc.Input(id=name, value="", type="text", debounce=True, className="number")]
+    entries.append(html.Span("", id="over-unit", className="unit"))
+    return html.Div(entries, className="options")

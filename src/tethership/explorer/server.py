@@ -1,0 +1,116 @@
+"""The server: one socket on loopback, ended cleanly with its computing process. Depends on: werkzeug, explorer."""
+
+import errno
+import logging
+import signal
+import socket
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from types import FrameType
+
+from werkzeug.serving import BaseWSGIServer, make_server
+
+from tethership.errors import ConfigError
+from tethership.explorer.app import make_app
+from tethership.explorer.desk import Desk
+from tethership.explorer.folder import Folder
+from tethership.explorer.guard import guard
+from tethership.explorer.understanding import Understanding
+from tethership.explorer.worker import Worker
+
+LOOPBACK = "127.0.0.1"
+
+
+class Explorer:
+    """A server that listens already; use it as a context, so that its computing process ends with it.
+
+    Parameters
+    ----------
+    scenario : str
+        Shown at first: a packaged name, or the name of a file in the folder.
+    folder : Path
+        Scenario files are read and saved there.
+    port : int
+        0 for a free one.
+
+    Raises
+    ------
+    ConfigError
+        No such scenario or folder, or the port is in use.
+    """
+
+    def __init__(self, scenario: str = "docking", folder: Path = Path(), port: int = 0) -> None:
+        known = Understanding(Folder(folder))
+        known.base(scenario)
+        listening = _listen(port)
+        self.port: int = listening.getsockname()[1]
+        self.folder = known.folder.root
+        self.desk = Desk(Worker())
+        app = make_app(known, self.desk, scenario)
+        guard(app.server, self.port, list(app.csp_hashes()))
+        logging.getLogger("werkzeug").setLevel(logging.ERROR)
+        self._server: BaseWSGIServer = make_server(
+            LOOPBACK, self.port, app.server, threaded=True, fd=listening.fileno()
+        )
+        listening.close()
+
+    @property
+    def address(self) -> str:
+        """Where a browser finds it."""
+        return f"http://{LOOPBACK}:{self.port}"
+
+    def serve(self) -> None:
+        """Answer until `stop`."""
+        self._server.serve_forever(poll_interval=0.1)
+
+    def stop(self) -> None:
+        """Make `serve` return; from any thread but its own."""
+        self._server.shutdown()
+
+    def __enter__(self) -> "Explorer":
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._server.server_close()
+        self.desk.close()
+
+
+def serve_until_signal(explorer: Explorer, ready: Callable[[], None]) -> None:
+    """Answer until SIGINT or SIGTERM, then end the computing process too.
+
+    Parameters
+    ----------
+    explorer : Explorer
+        Listens already.
+    ready : callable
+        Called once it answers.
+    """
+
+    def end(number: int, frame: FrameType | None) -> None:
+        threading.Thread(target=explorer.stop, daemon=True).start()
+
+    former = {number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        with explorer:
+            threading.Thread(target=ready, daemon=True).start()
+            explorer.serve()
+    finally:
+        for number, handler in former.items():
+            signal.signal(number, handler)
+
+
+def _listen(port: int) -> socket.socket:
+    """Return a socket that listens on loopback; raises ConfigError where it cannot."""
+    if not 0 <= port <= 65535:
+        raise ConfigError(f"--port {port} is no port; give one from 1024 to 65535, or 0 for a free one")
+    listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listening.bind((LOOPBACK, port))
+        listening.listen(64)
+    except OSError as error:
+        listening.close()
+        reason = "is in use" if error.errno == errno.EADDRINUSE else f"cannot be used ({error.strerror})"
+        raise ConfigError(f"port {port} {reason}; choose another with --port, or --port 0 for a free one") from error
+    return listening
