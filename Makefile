@@ -8,6 +8,11 @@ BIN := $(VENV)/bin
 
 dock: $(VENV)/.installed
 	$(BIN)/tethership dock --out out
+	@echo
+	@echo "Open next:"
+	@echo "  out/replay.html              the flight in space, to be played, with its histories"
+	@echo "  out/docking.png              the paper's four panels"
+	@echo "  $(BIN)/tethership explore    a local page: change the wind, the cable or a gain and see what follows"
 
 test: $(VENV)/.installed-dev
 	$(BIN)/python -m pytest -n 2 --dist worksteal

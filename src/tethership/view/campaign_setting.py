@@ -9,8 +9,8 @@ from tethership.campaign.answers import limit_values
 from tethership.campaign.distributions import Distribution
 from tethership.campaign.plan import Plan
 from tethership.scenario import list_parameters
-from tethership.view.docking import compass
 from tethership.view.report import Section, Table
+from tethership.view.words import compass
 
 CONDITIONS = (
     "**Met**: the whole interval is at or below what is allowed, flights that ended early being counted as exceeding. "
