@@ -8,6 +8,7 @@ import tethership as ts
 from tethership.errors import ConfigError
 from tethership.physics.gust import CosineGust
 from tethership.physics.wind import LogarithmicWind
+from tethership.scenario.wind_file import record_warning
 from tethership.simulation.closed_loop import ClosedLoop
 from tethership.system.airship import wrenches
 
@@ -195,3 +196,13 @@ def test_turbulence_has_finite_exact_derivatives():
     vector = loop.initial(point.state)
     slopes = jax.jacfwd(loop.vector_field, argnums=(0, 1))(jnp.asarray(3.0), vector)
     assert all(bool(jnp.all(jnp.isfinite(slope))) for slope in slopes)
+
+
+def test_a_wind_file_may_be_a_change_and_its_end_is_told(tmp_path, monkeypatch):
+    (tmp_path / "mast.csv").write_text("time,north,east\n" + "\n".join(f"{t},-{6 + t},0" for t in range(5)))
+    monkeypatch.chdir(tmp_path)
+    scenario = ts.load_scenario("docking", {"wind.file": "mast.csv", "wind.model": "measured"})
+    assert scenario.config.wind.speed == pytest.approx(8.0)
+    assert record_warning(scenario.config.wind, 4.0) is None
+    assert "ends at 4 s and the flight at 60 s" in record_warning(scenario.config.wind, 60.0)
+    assert record_warning(ts.load_scenario("docking").config.wind, 60.0) is None

@@ -18,6 +18,7 @@ from tethership.campaign.plan import Plan
 from tethership.campaign.probability import estimate
 from tethership.campaign.schema import Requirement
 from tethership.campaign.work import COMPARED
+from tethership.scenario.wind_file import record_warning
 from tethership.simulation import Outcome
 from tethership.simulation.batch import CODES
 
@@ -121,6 +122,7 @@ def answer(plan: Plan, data: xr.Dataset, confidence: float = 0.95) -> dict[str, 
         "pairs": [_pair(plan, data, flags, a, b) for a, b in itertools.combinations(range(len(names)), 2)],
         "compliance": [_complied(plan, data, flags, r, i) for r in plan.config.requirements for i in _laws_of(plan, r)],
         "step_error": step_error(data),
+        "wind_warning": record_warning(plan.scenario.config.wind, float(np.nanmax(data["flight_time"].values))),
     }
 
 

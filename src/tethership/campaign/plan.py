@@ -164,7 +164,7 @@ def make_plan(name: str, changes: dict[str, Any] | None = None, scenario_changes
         raise ConfigError(
             f"{name}: a grid flies every combination of its levels; leave out --samples or change the levels"
         )
-    own = load_scenario(_beside(name, config.scenario), config.changes)
+    own = load_scenario(_beside(name, config.scenario), _wind_beside(name, config.changes, scenario_changes or {}))
     scenario = own.changed({"control.layers": list(LAYERS)})  # a layer is off by its gains: see `layer_switches`
     _check_limits(config, name)
     sample = draw(config, scenario, name)
@@ -178,6 +178,13 @@ def _beside(campaign: str, scenario: str) -> str:
     if scenario.endswith(".toml") and campaign.endswith(".toml") and not Path(scenario).is_absolute():
         return str(Path(campaign).parent / scenario)
     return scenario
+
+
+def _wind_beside(campaign: str, changes: dict[str, Any], typed: dict[str, Any]) -> dict[str, Any]:
+    """Return changes with the path of a wind file counted from the campaign's file, unless it was typed."""
+    if "wind.file" not in changes or "wind.file" in typed or not campaign.endswith(".toml"):
+        return changes
+    return {**changes, "wind.file": str(Path(campaign).parent / str(changes["wind.file"]))}
 
 
 def _check_limits(config: CampaignConfig, origin: str) -> None:

@@ -87,8 +87,9 @@ def dock(
         print_json(result)
     else:
         _print(result, flight, rows)
-    if result["cable_warning"] and not json:  # in the JSON it has its key
-        typer.echo(f"tethership: warning: {result['cable_warning']}", err=True)
+    for warning in (result["cable_warning"], result["wind_warning"]):
+        if warning and not json:  # in the JSON it has its key
+            typer.echo(f"tethership: warning: {warning}", err=True)
     if not flight.outcome.is_answer:
         raise typer.Exit(NO_ANSWER)
 
@@ -176,13 +177,15 @@ def _drawn(flight: "Flight", out: Path) -> list[str]:
 
 def summary(scenario: Scenario, flight: "Flight") -> dict[str, Any]:
     """Return the keys that scripts may rely on, SI, θ_rms in degrees."""
+    from tethership.scenario.wind_file import record_warning
     from tethership.simulation.quasi_static import quasi_static_warning
 
+    flown = float(flight.data["time"][-1]) if flight.data.sizes["time"] else 0.0
     return {
         "outcome": flight.outcome.name,
         "message": flight.outcome.value,
         "docking_time": flight.docking_time,
-        "flight_time": float(flight.data["time"][-1]) if flight.data.sizes["time"] else 0.0,
+        "flight_time": flown,
         **flight.metrics,
         "wind": scenario.config.wind.speed,
         "layers": flight.attributes["layers"],
@@ -191,6 +194,7 @@ def summary(scenario: Scenario, flight: "Flight") -> dict[str, Any]:
         "limits": flight.attributes["limits"],
         "steps": flight.attributes["steps"],
         "cable_warning": quasi_static_warning(flight),
+        "wind_warning": record_warning(scenario.config.wind, flown),
     }
 
 

@@ -22,7 +22,7 @@ from tethership.scenario.quantity import Table
 from tethership.scenario.schema import ScenarioConfig
 from tethership.scenario.solver import SolverConfig
 from tethership.scenario.vehicle_schema import VehicleConfig
-from tethership.scenario.wind_file import expand_wind_file
+from tethership.scenario.wind_file import expand_wind_file, take_wind_file
 from tethership.system import TetheredAirship
 
 ModelType = TypeVar("ModelType", bound=Table)
@@ -183,6 +183,7 @@ def load_scenario(name: str = "docking", changes: Mapping[str, Any] | None = Non
         document["vehicle"] = (changes or {})["vehicle"]
         changes = {key: value for key, value in (changes or {}).items() if key != "vehicle"}
     base = Path(origin).parent if origin.endswith(".toml") else None
+    changes = take_wind_file(document, dict(changes or {}))
     expand_wind_file(document, base, origin)
     vehicle = document.get("vehicle")
     if isinstance(vehicle, str):

@@ -5,6 +5,7 @@ air, or `speed` [m/s] and `direction` [deg], that from which it comes, clockwise
 """
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -51,6 +52,40 @@ def expand_wind_file(document: Document, base: Path | None, origin: str) -> None
         "times": {"value": times.tolist(), "unit": "s"},
         "velocities": {"value": velocities.tolist(), "unit": "m/s"},
     }
+
+
+def take_wind_file(document: Document, changes: Document) -> Document:
+    """Put a change of `wind.file` into a document, its path counted from here; returns the other changes.
+
+    Parameters
+    ----------
+    document : dict
+        Of a scenario, changed in place: its wind becomes the measured one.
+    changes : dict
+        Dotted name → value.
+    """
+    if "wind.file" not in changes:
+        return changes
+    document["wind"] = {"model": "measured", "file": str(Path(str(changes["wind.file"])).absolute())}
+    return {name: value for name, value in changes.items() if name not in ("wind.file", "wind.model")}
+
+
+def record_warning(wind: Any, duration: float) -> str | None:
+    """Return what is to be said of a measured wind that ends before a flight does, None where all is well.
+
+    Parameters
+    ----------
+    wind : WindConfig
+        Of a scenario.
+    duration : float
+        Of the flight [s].
+    """
+    if wind.model != "measured" or duration <= float(wind.times[-1]):
+        return None
+    return (
+        f"the measured wind ends at {float(wind.times[-1]):g} s and the flight at {duration:.4g} s: its last value was "
+        "held from there on; give a longer record"
+    )
 
 
 def read_wind(path: Path) -> tuple[np.ndarray, np.ndarray]:

@@ -93,6 +93,8 @@ def _abstract(plan: Plan, answers: dict[str, Any]) -> list[str]:
         words = ("met", "not met", "undecided", "no verdict")
         counted = ", ".join(f"**{verdicts.count(word)}** {word}" for word in words if word in verdicts)
         lines.append(f"Requirements: {counted}.")
+    if answers["wind_warning"]:
+        lines.append(f"**Wind:** {answers['wind_warning']}.")
     if answers["failed"]:
         lines.append(f"**{answers['failed']} of {answers['runs']} flights have no result**: {_why(answers)}.")
     return lines
