@@ -33,7 +33,9 @@ def lamb_integral(semi_axes, axis):
     return np.prod(semi_axes) * value
 
 
-@pytest.mark.parametrize("fineness", [0.2, 0.5, 0.9, 0.92, 1.05, 1.117, 1.119, 1.5, 2.0, 3.0, 4.02, 4.87, 6.0, 10.0, 25.0])
+@pytest.mark.parametrize(
+    "fineness", [0.2, 0.5, 0.9, 0.92, 1.05, 1.117, 1.119, 1.5, 2.0, 3.0, 4.02, 4.87, 6.0, 10.0, 25.0]
+)
 def test_factors_are_lambs_integrals(fineness):
     a, b = fineness, 1.0
     alpha, beta = (lamb_integral((a, b, b), axis) for axis in (0, 1))

@@ -221,7 +221,7 @@ def test_without_fins_the_hull_rests_but_turns_away():
 
 
 def test_lines_hold_it_through_a_gust():
-    """Wind 10 m/s with a gust of 2.5 m/s across, lines held: it swings, comes back, and the flight ends by its clock."""
+    """Wind 10 m/s with a gust of 2.5 m/s across, held: it swings, comes back; the flight ends by its clock."""
     scenario = load()
     point = ts.trim(scenario, throw=True)
     flight = ts.dock(scenario, point, layers=())
