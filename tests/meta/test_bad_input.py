@@ -169,7 +169,7 @@ def test_names():
         ts.load_scenario("nowhere.toml")
     with pytest.raises(ts.ConfigError, match=r"wind: unknown key 'speeed'; did you mean 'speed'"):
         ts.load_scenario("docking", {"wind.speeed": 1.0})
-    with pytest.raises(ts.ConfigError, match=r"no item 'nos' in a list of 1"):
+    with pytest.raises(ts.ConfigError, match=r"no item 'nos' in a list of 1; there are nose"):
         ts.load_scenario("docking", {"cables.nos.length": 1.0})
 
 

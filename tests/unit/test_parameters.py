@@ -220,3 +220,11 @@ def test_tables_left_to_their_defaults_can_be_changed():
     """`hover` says nothing of its air: its numbers are parameters all the same."""
     warmer = ts.scenario_at(ts.load_scenario("hover"), {"atmosphere.temperature_offset": 5.0})
     assert warmer.config.atmosphere.temperature_offset == 5.0
+
+
+def test_a_change_may_carry_a_unit_where_the_file_needs_a_source():
+    """As `--set vehicle.hull.length=50ft` gives it; a file without a source stays refused."""
+    longer = ts.load_scenario("three_lines", {"vehicle.hull.length": {"value": 60.0, "unit": "ft"}})
+    assert longer.config.vehicle.hull.length == pytest.approx(60.0 * 0.3048, rel=1e-14)
+    with pytest.raises(ts.ConfigError, match="the unit is 'kg', which is no 'm'"):
+        ts.load_scenario("three_lines", {"vehicle.hull.length": {"value": 60.0, "unit": "kg"}})

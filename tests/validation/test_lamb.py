@@ -1,4 +1,4 @@
-"""Lamb's inertia factors of a prolate spheroid, held against Lamb's own integrals and the printed table.
+"""Lamb's inertia factors of a spheroid, held against Lamb's own integrals and the printed table.
 
 Sources: H. Lamb, *Hydrodynamics*, 6th ed. (1932), art. 114–115 (the integrals); H. Lamb, *The inertia-coefficients
 of an ellipsoid moving in fluid*, R&M 623 (1918) (the table, copied by Munk in NACA TR-184); Table 2 of Riboldi et al.
@@ -33,7 +33,9 @@ def lamb_integral(semi_axes, axis):
     return np.prod(semi_axes) * value
 
 
-@pytest.mark.parametrize("fineness", [1.05, 1.5, 2.0, 3.0, 4.02, 4.87, 6.0, 10.0, 25.0])
+@pytest.mark.parametrize(
+    "fineness", [0.2, 0.5, 0.9, 0.92, 1.05, 1.117, 1.119, 1.5, 2.0, 3.0, 4.02, 4.87, 6.0, 10.0, 25.0]
+)
 def test_factors_are_lambs_integrals(fineness):
     a, b = fineness, 1.0
     alpha, beta = (lamb_integral((a, b, b), axis) for axis in (0, 1))
@@ -44,6 +46,15 @@ def test_factors_are_lambs_integrals(fineness):
     # Quadrature to 1e-12; near the sphere β₀ − α₀ is a difference of nearly equal numbers (1e-16/e² ≈ 1e-14).
     np.testing.assert_allclose(factors(fineness), expected, rtol=1e-9)
     assert alpha + 2.0 * beta == pytest.approx(2.0, abs=1e-11)  # Laplace's equation: the three add up to 2
+
+
+def test_a_sphere_has_one_half_and_resists_no_turning():
+    """Lamb, art. 92: half the displaced mass in any direction; nothing of it is NaN or infinite, nor its slope."""
+    np.testing.assert_allclose(factors(1.0), [0.5, 0.5, 0.0], atol=1e-15)
+    slope = jax.jacfwd(lamb1932)(jnp.asarray(1.0))
+    step = 1e-5
+    expected = (factors(1.0 + step) - factors(1.0 - step)) / (2.0 * step)
+    np.testing.assert_allclose([slope.axial, slope.lateral, slope.rotational], expected, atol=1e-8)
 
 
 # Lamb (1918), R&M 623, table for the prolate ellipsoid: a/b, k₁, k₂, k′.

@@ -21,6 +21,8 @@ def change(document: Document, dotted: str, value: Any, origin: str) -> None:
         raise ConfigError(f"{origin}: {dotted!r} is no value that can be changed")
     if _is_number(value) and not any(step.endswith("share") for step in path):
         value = {"value": list(value) if isinstance(value, tuple) else value, "unit": SI_UNIT}
+    elif isinstance(value, dict) and value.keys() == {"value", "unit"}:
+        value = {**value, "source": "a change"}  # vehicles ask for a source; a change is one
     place[last] = value
 
 
@@ -39,7 +41,9 @@ def _enter(place: Any, step: str, dotted: str, origin: str) -> Any:
             return named[0]
         if step.isdigit() and int(step) < len(place):
             return place[int(step)]
-        raise ConfigError(f"{origin}: {dotted!r}: no item {step!r} in a list of {len(place)}")
+        names = [str(item["name"]) for item in place if isinstance(item, dict) and "name" in item]
+        there = f"; there are {', '.join(names)}" if names else ""
+        raise ConfigError(f"{origin}: {dotted!r}: no item {step!r} in a list of {len(place)}{there}")
     if isinstance(place, dict):
         return place.setdefault(step, {})
     raise ConfigError(f"{origin}: {dotted!r}: {step!r} is inside a value, not a table")

@@ -99,7 +99,7 @@ class LambConfig(Table):
     """Apparent mass by Lamb's formulas from the hull's length over diameter, or a given fineness ratio."""
 
     model: Literal["lamb"]
-    fineness: Annotated[float, Quantity("1", low=1.0001, sourced=True)] | None = None
+    fineness: Annotated[float, Quantity("1", positive=True, sourced=True)] | None = None
 
 
 ApparentMassConfig = Annotated[FactorsConfig | LambConfig, Field(discriminator="model")]

@@ -19,6 +19,9 @@ SIZE = (10.8, 8.6)
 LEFT = 0.075
 """Left margin, over the figure's width [-]."""
 
+LEGEND_ROOM = 34
+"""Letters of cables' names, two more each for the line, that the legend's row holds beside the rest."""
+
 
 def plot_docking(flight: Flight, figure: Figure | None = None, title: str | None = None) -> Figure:
     """Draw a docking flight as the four panels of Fig. 12 of Riboldi et al.
@@ -125,7 +128,9 @@ def _legend(figure: Figure, snapshots: Snapshots) -> None:
 
 
 def _cable_labels(names: list[str]) -> list[str]:
-    """Return the cables' labels, as many as the row has room for."""
-    if len(names) in (2, 3, 4):
-        return [f"cable {name}" for name in names]
+    """Return the cables' labels, as long as the row has room for."""
+    if len(names) > 1:
+        for labels in ([f"cable {name}" for name in names], names):
+            if sum(len(label) + 2 for label in labels) <= LEGEND_ROOM:
+                return labels
     return ["cable" if len(names) == 1 else "cables"][: len(names)]
