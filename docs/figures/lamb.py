@@ -1,4 +1,4 @@
-"""Lamb's factors of a prolate spheroid over its fineness, with the paper's Table 2."""
+"""Lamb's factors of a spheroid over its fineness, with the paper's Table 2."""
 
 import jax
 import jax.numpy as jnp
