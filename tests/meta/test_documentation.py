@@ -38,6 +38,7 @@ def run_commands(example: Example) -> None:
         if not words or words[0] in ("make", "pip", "git", "cd", "open", "xdg-open", "python"):
             continue
         assert words[0] == "tethership", f"a block of shell has {line!r}; what is that?"
+        assert not words[1].startswith("--install"), "a test must not change the shell of who runs it"
         if Path(example.path).name == "README.md" and words[1] in LONG:
             continue
         assert tethership(words) == 0, f"`{line}` failed"
