@@ -21,7 +21,7 @@ def change(document: Document, dotted: str, value: Any, origin: str) -> None:
         raise ConfigError(f"{origin}: {dotted!r} is no value that can be changed")
     if _is_number(value) and not any(step.endswith("share") for step in path):
         value = {"value": list(value) if isinstance(value, tuple) else value, "unit": SI_UNIT}
-    elif isinstance(value, dict) and value.keys() == {"value", "unit"}:
+    elif dotted.startswith("vehicle.") and isinstance(value, dict) and value.keys() == {"value", "unit"}:
         value = {**value, "source": "a change"}  # vehicles ask for a source; a change is one
     place[last] = value
 
