@@ -35,42 +35,37 @@ def compliance_section(answers: Mapping[str, Any]) -> Section | None:
         return None
     heads = [
         "requirement",
-        "limit",
         "law",
-        "allowed",
+        "verdict",
         "exceeding",
         "ended early",
         "failed",
-        "of",
         "interval",
-        "confidence",
+        "allowed",
         "least flights",
-        "verdict",
     ]
     cells = [
         [
-            row["requirement"],
-            f"{row['limit'].replace('_', ' ')} {numbered(row['value'])}",
+            f"{row['requirement']} ({row['limit'].replace('_', ' ')} {numbered(row['value'])})",
             row["law"],
-            row["allowed"],
-            row["exceeding"],
+            row["verdict"],
+            f"{row['exceeding']} of {row['flights']}",
             row["undetermined"],
             row["failed"],
-            row["flights"],
             interval(row),
-            row["confidence"],
+            f"{row['allowed']:g} at {100 * row['confidence']:g} %",
             row["least_flights"],
-            row["verdict"],
         ]
         for row in rows
     ]
     reasons = [f"{row['requirement']}, {row['law']}: {row['reason']}." for row in rows if row["reason"]]
     note = (
-        "Ended early: flights that did not dock and had not exceeded the limit by then. Least flights: as many, none "
-        "exceeding, as it takes to meet the requirement."
+        "Ended early: flights that did not dock and had not exceeded the limit by then. The interval begins with them "
+        "counted as not exceeding and ends with them counted as exceeding. Least flights: as many, none exceeding, as "
+        "it takes to meet the requirement."
     )
     return Section(
-        "Compliance", [*CONDITIONS, *reasons], [Table("Requirements.", heads, cells, note, verdict_column=11)]
+        "Compliance", [*CONDITIONS, *reasons], [Table("Requirements.", heads, cells, note, verdict_column=2)]
     )
 
 
@@ -94,7 +89,7 @@ def _tables(plan: Plan) -> list[Table]:
         Table("Laws.", ["law", "layers", "gains of", "changes"], laws),
         Table(
             "What varies.",
-            ["quantity", "distribution", "numbers", "unit", "least drawn", "largest drawn"],
+            ["quantity", "distribution", "least drawn", "largest drawn"],
             _varied(plan),
         ),
     ]
@@ -137,7 +132,7 @@ def _varied(plan: Plan) -> list[list[Any]]:
         column = (plan.sample.values[:, i] - zero) / ((one - zero) or 1.0)
         unit = "× the scenario's" if spread.relative else spread.unit
         ends = [float(column.min()), float(column.max())]
-        cells.append([f"`{name}`", spread.distribution, _numbers(spread), unit, *ends])
+        cells.append([f"`{name}`", f"{spread.distribution}, {_numbers(spread)} [{unit}]", *ends])
     return cells
 
 
