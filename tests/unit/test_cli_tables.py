@@ -120,3 +120,12 @@ def test_the_shell_completes(typed, offered):
 def test_an_exponent_is_no_unit(text, found):
     match = NUMBER_WITH_UNIT.fullmatch(text)
     assert (match and (match["number"], match["unit"])) == found
+
+
+def test_no_other_file_is_overwritten(tmp_path):
+    flight = tmp_path / "flight.nc"
+    flight.write_bytes(b"a flight")
+    done = run("list", "--csv", flight)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "ends in .csv" in done.stderr
+    assert flight.read_bytes() == b"a flight"

@@ -33,7 +33,7 @@ def test_component_and_names(flight):
 
 def test_legend_is_sorted(flight):
     axes = ts.plot_loads(flight)
-    strengths = [float(text.get_text().split("rms ")[1]) for text in axes.get_legend().get_texts()]
+    strengths = [float(text.get_text().split("rms ")[1].removesuffix(" N")) for text in axes.get_legend().get_texts()]
     assert strengths == sorted(strengths, reverse=True)
 
 

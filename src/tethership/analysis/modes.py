@@ -94,6 +94,11 @@ class Modes(NamedTuple):
         """Names of the modes."""
         return [mode.name for mode in self.modes]
 
+    def __repr__(self) -> str:
+        """Return a line for each mode: its name, eigenvalue and damping."""
+        lines = (f"  {mode.name:<22} λ = {mode.eigenvalue:.5f} 1/s, ζ = {mode.damping:+.3f}" for mode in self.modes)
+        return "Modes, fastest first:\n" + "\n".join(lines)
+
     def find(self, name: str) -> Mode:
         """Return the mode of a name, or the coalesced mode that it is part of.
 

@@ -74,7 +74,7 @@ def _fail(message: str, code: int) -> None:
 def main() -> None:
     """Run the command with the promised exit codes and one clear line for wrong input."""
     try:
-        code = app(standalone_mode=False)
+        code = app(prog_name="tethership", standalone_mode=False)
     except ConfigError as error:
         _fail(str(error), WRONG_INPUT)
     except SolveError as error:

@@ -55,6 +55,8 @@ def writable_csv(path: Path | None) -> Path | None:
         return None
     if path.is_dir():
         raise ConfigError(f"--csv {path} is a folder; name a file, e.g. --csv {path / 'table.csv'}")
+    if path.suffix.lower() not in (".csv", ".txt"):
+        raise ConfigError(f"--csv {path}: a table goes into a file that ends in .csv; name one, nothing is overwritten")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.open("a").close()

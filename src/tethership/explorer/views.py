@@ -100,6 +100,7 @@ def locus_rest(result: dict[str, Any]) -> Any:
         )
         for mode in result["modes"]
     ]
+    growing = [mode["name"] for mode in result["modes"] if mode["eigenvalue"][0] > 1e-9]
     verbs = {"unstable": "becomes unstable", "stable": "becomes stable"}
     happenings = [
         f"{' and '.join(event['tracks'])} {verbs.get(event['kind'], event['kind'])} at {event['at']:.4g} "
@@ -110,9 +111,8 @@ def locus_rest(result: dict[str, Any]) -> Any:
         [
             _grid("Modes of the chosen scenario (stars)", header, rows, {0}),
             html.H3("Along the sweep"),
-            html.Ul(
-                [html.Li(text) for text in happenings] or html.Li("no coalescence, splitting or loss of stability")
-            ),
+            html.Ul([html.Li(text) for text in (happenings or ["no coalescence, splitting or change of stability"])]),
+            *([html.P(f"Unstable at the chosen scenario: {', '.join(growing)}.")] if growing else []),
         ]
     )
 

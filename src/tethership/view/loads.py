@@ -64,12 +64,13 @@ def plot_loads(
         loads = {name: np.linalg.norm(load, axis=1) for name, load in loads.items()}
     if axes is None:
         axes = Figure(figsize=(8.6, 4.4), layout="constrained").subplots()
+    unit = KINDS[kind].rsplit("[", 1)[1].rstrip("]")
     time = flight.data["time"].to_numpy()
     strengths = {name: float(np.sqrt(np.mean(load**2))) for name, load in loads.items()}
     ordered = sorted(loads, key=lambda name: -strengths[name])
     for place, name in enumerate(ordered):
         dash = "-" if place < len(style.CABLES) else "--"
-        label = f"{name.replace('_', ' ')}, rms {strengths[name]:.3g}"
+        label = f"{name.replace('_', ' ')}, rms {strengths[name]:.3g} {unit}"
         axes.plot(time, loads[name], dash, color=style.cable_colour(place), linewidth=1.2, label=label, gid=name)
     _dress(axes, loads, component is None)
     of = "" if component is None else f"{component} component of "

@@ -16,6 +16,9 @@ const SCENE_COLOURS = {
 
 const TENSION_COLOURS = ["#56b4e9", "#0072b2", "#009e73", "#e69f00", "#d55e00", "#7a0019"];
 
+// Whether two flights watch different tensions.
+const limitsDiffer = (flights) => new Set(flights.map((flight) => JSON.stringify(flight.limits))).size > 1;
+
 // Colours of tension: the last ones at the watched limits, the first two at a thirtieth and a third of the lowest; in
 // between by the logarithm of the tension.
 class TensionScale {

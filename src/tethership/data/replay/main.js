@@ -13,6 +13,9 @@ const describe = (flights) => {
 const howItEnded = (flight) => `${flight.outcome} after ${flight.duration.toFixed(1)}\u00a0s`;
 
 const notesOf = (flight) => [
+  ...(flight.outside > 0
+    ? [`quasi-static cable outside its range in ${Math.ceil(100 * flight.outside)} % of the flight`]
+    : []),
   ...(flight.missing.length ? [`not in this file: ${flight.missing.join(", ")}`] : []),
   ...(flight.ground_modelled
     ? []
@@ -30,7 +33,8 @@ const makeStageBoxes = (flights, same) =>
     const own = [...flight.words.filter((part) => !same.includes(part)), howItEnded(flight)];
     caption.querySelector("span").textContent = own.join(" · ");
     const later = flights.slice(i + 1).flatMap(notesOf);
-    box.querySelector(".note").textContent = notesOf(flight)
+    const scale = i > 0 && limitsDiffer(flights) ? ["cables coloured by A’s limits, not B’s"] : [];
+    box.querySelector(".note").textContent = [...scale, ...notesOf(flight)]
       .filter((note) => !later.includes(note))
       .join(" · ");
     return box;

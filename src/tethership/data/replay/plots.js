@@ -3,6 +3,9 @@
 const SIDE = 140; // to the right of the axes, for the names of the series [px]
 const PLOT_FONT = "11px system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif";
 
+// Names that find room beside the title of the tension plot; more go below it.
+const MOST_BESIDE_TITLE = 2;
+
 class Plots {
   constructor(parent, flights, tracks, clock) {
     this.parent = parent;
@@ -53,6 +56,7 @@ class Plots {
       list.append(item);
       panel.entries.push({ one, value: item.querySelector("b") });
     }
+    panel.box.classList.toggle("many", Boolean(panel.log) && panel.entries.length > MOST_BESIDE_TITLE);
   }
 
   options(panel) {
@@ -119,11 +123,15 @@ class Plots {
   limits(plot) {
     const { ctx, bbox } = plot;
     const ratio = devicePixelRatio;
-    const found = this.flights[0].limits.map((limit, i) => ({
-      ...limit,
-      colour: DATA.colours.limits[i % 4],
-      y: plot.valToPos(limit.value, "y", true),
-    }));
+    const several = limitsDiffer(this.flights);
+    const found = (several ? this.flights : this.flights.slice(0, 1)).flatMap((flight, k) =>
+      flight.limits.map((limit, i) => ({
+        ...limit,
+        name: several ? `${LETTERS[k]} ${limit.name}` : limit.name,
+        colour: DATA.colours.limits[i % 4],
+        y: plot.valToPos(limit.value, "y", true),
+      })),
+    );
     ctx.save();
     ctx.font = PLOT_FONT.replace("11px", `${10 * ratio}px`);
     ctx.textBaseline = "middle";
@@ -165,7 +173,10 @@ class Plots {
     const styles = getComputedStyle(this.parent);
     const stacked = styles.overflowY === "visible";
     const foot = 29; // the time axis
-    const heads = this.panels.reduce((sum, panel) => sum + panel.box.querySelector("h2").offsetHeight, 0);
+    const heads = this.panels.reduce((sum, panel) => {
+      const wrapped = panel.box.classList.contains("many") ? panel.box.querySelector("ul").offsetHeight : 0;
+      return sum + panel.box.querySelector("h2").offsetHeight + wrapped;
+    }, 0);
     const free =
       this.parent.clientHeight - parseFloat(styles.paddingTop) - parseFloat(styles.paddingBottom) - heads - foot;
     const share = this.panels.reduce((sum, panel) => sum + (panel.tall || 1), 0);

@@ -27,7 +27,7 @@ class Ship {
       this.group.add(mesh);
     }
     this.arrows = ship.thrusters.map(() => new Arrow(SCENE_COLOURS.thrust, 0.006 * ship.length));
-    this.group.add(...this.arrows.map((arrow) => arrow.group));
+    for (const arrow of this.arrows) this.group.add(arrow.group);
   }
 
   surface(vertices, faces, colour) {

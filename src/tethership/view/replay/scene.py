@@ -1,6 +1,6 @@
 """A flight as plain data that a page can hold: ship, cables, ground, limits, words, tracks.
 
-Depends on: view.hull_mesh, view.ship (the shape), view.replay.tracks, scenario.
+Depends on: view.hull_mesh, view.ship (the shape), view.replay.tracks, scenario, simulation.
 """
 
 from typing import Any
@@ -11,6 +11,7 @@ from tethership.errors import SolveError
 from tethership.scenario import ScenarioConfig
 from tethership.scenario.load import validated
 from tethership.simulation import Flight
+from tethership.simulation.quasi_static import quasi_static_warning, share_outside
 from tethership.view.hull_mesh import ship_mesh
 from tethership.view.replay.tracks import COPIED, packed, packed_tracks, tracks
 from tethership.view.ship import ship_shape
@@ -73,6 +74,7 @@ def scene(flight: Flight, name: str) -> dict[str, Any]:
             {"name": limit.replace("_", " "), "value": float(value)}
             for (limit, _), value in zip(config.limits, attributes["limits"], strict=True)
         ],
+        "outside": share_outside(flight) if quasi_static_warning(flight) else 0.0,
         "missing": [track.replace("_", " ") for track in expected if track not in found],
         "tracks": packed_tracks(found),
     }
