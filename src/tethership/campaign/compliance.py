@@ -16,7 +16,7 @@ MOST_FAILED = 0.05
 
 FEWEST_EVENTS = 5
 """Fewest flights of each scramble on either side of a limit for Student's interval to be trusted: below, it is too
-short (of 1 024 Sobol points with 3.5 events expected it misses upwards in 8 % of cases instead of 2.5 %)."""
+short (of 1 024 Sobol points with 3.5 events expected it misses upwards in 7 % of cases instead of 2.5 %)."""
 
 
 def least_flights(allowed: float, confidence: float) -> int:

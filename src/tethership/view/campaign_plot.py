@@ -51,7 +51,7 @@ def plot_campaign(campaign: Campaign, axes: Axes | None = None, kind: str = "lim
             rows = {name: of["exceedance"] for name, of in answers["laws"].items()}
             return figures.plot_limits(rows, answers["confidence"], axes)
         case "peaks":
-            return figures.plot_peaks(_of_laws(campaign, "tension_max"), watched(plan), axes)
+            return figures.plot_peaks(_of_laws(campaign, "tension_max"), _watched(plan), axes)
         case "times":
             return figures.plot_times(_of_laws(campaign, "docking_time"), plan.config.limits.time, axes)
         case "convergence":
@@ -59,27 +59,6 @@ def plot_campaign(campaign: Campaign, axes: Axes | None = None, kind: str = "lim
         case _:
             name = plan.laws[_law_place(plan, law)].name
             return figures.plot_importance(answers["laws"][name]["importance"], axes)
-
-
-def watched(plan: Plan) -> dict[str, float]:
-    """Return the tensions that a campaign's scenario watches, by their names in words [N]."""
-    return dict(zip(TENSIONS, map(float, plan.scenario.config.watched_tensions()), strict=True))
-
-
-def settling(flags: dict[str, np.ndarray], law: int, confidence: float) -> dict[str, dict[str, np.ndarray]]:
-    """Return for each limit that some but not all flights of a law pass how its probability settles.
-
-    Parameters
-    ----------
-    flags : dict
-        From `answers.exceeded`, shape (laws, cases) each.
-    law : int
-        Its place.
-    confidence : float
-        Of the intervals.
-    """
-    passed = {name: of[law] for name, of in flags.items() if 0 < of[law].sum() < of[law].size}
-    return {name: running(of, confidence) for name, of in passed.items()}
 
 
 def _of_laws(campaign: Campaign, name: str) -> dict[str, np.ndarray]:
@@ -103,5 +82,13 @@ def _convergence(campaign: Campaign, axes: Axes | None, law: int) -> Axes:
             f"convergence is of independent draws, and this campaign was drawn by {answers['sampling']}; "
             'use sampling = "random"'
         )
-    found = settling(exceeded(campaign.plan, campaign.data), law, answers["confidence"])
-    return figures.plot_convergence(found, answers["confidence"], axes)
+    confidence = answers["confidence"]
+    flags = {name: of[law] for name, of in exceeded(campaign.plan, campaign.data).items()}
+    # limits that all or no flights exceed say nothing of settling
+    found = {name: running(of, confidence) for name, of in flags.items() if 0 < of.sum() < of.size}
+    return figures.plot_convergence(found, confidence, axes)
+
+
+def _watched(plan: Plan) -> dict[str, float]:
+    """Return the tensions that a campaign's scenario watches, by their names in words [N]."""
+    return dict(zip(TENSIONS, map(float, plan.scenario.config.watched_tensions()), strict=True))

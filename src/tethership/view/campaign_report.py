@@ -9,12 +9,13 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
+from tethership.campaign import Campaign
 from tethership.campaign.answers import exceeded
 from tethership.campaign.plan import Plan
 from tethership.errors import ConfigError
 from tethership.view import campaign_figures as figures
 from tethership.view.campaign_csv import write_exceedance, write_flights
-from tethership.view.campaign_plot import settling, watched
+from tethership.view.campaign_plot import plot_campaign
 from tethership.view.campaign_setting import compliance_section, flown_section, interval
 from tethership.view.report import Figure, Section, Table, write_report
 from tethership.view.study_tables import NAMES
@@ -157,23 +158,15 @@ def _limit_figures(
     folder: Path, plan: Plan, data: xr.Dataset, answers: dict[str, Any], flags: dict[str, np.ndarray]
 ) -> list[Figure]:
     """Return pictures of peaks, times and convergence."""
-    laws = [law.name for law in plan.laws]
-    peaks = {law: data["tension_max"].values[i] for i, law in enumerate(laws)}
-    times = {law: data["docking_time"].values[i] for i, law in enumerate(laws)}
-    confidence = answers["confidence"]
-    rows = {name: of["exceedance"] for name, of in answers["laws"].items()}
-    drawn = [
-        _figure(folder, "limits", figures.plot_limits(rows, confidence, None), "Probability of exceeding each limit."),
-        _figure(
-            folder, "peaks", figures.plot_peaks(peaks, watched(plan)), "Share of flights whose peak exceeds a tension."
-        ),
-        _figure(folder, "times", figures.plot_times(times, plan.config.limits.time), "Time to dock."),
-    ]
-    paths = settling(flags, 0, confidence)
-    if answers["sampling"] == "random" and paths:
-        text = f"How the probabilities of `{laws[0]}` settle with the number of flights."
-        drawn.append(_figure(folder, "convergence", figures.plot_convergence(paths, confidence), text))
-    return drawn
+    campaign = Campaign(plan, data, answers, flown=0)
+    texts = {
+        "limits": "Probability of exceeding each limit.",
+        "peaks": "Share of flights whose peak exceeds a tension.",
+        "times": "Time to dock.",
+    }
+    if answers["sampling"] == "random" and any(0 < of[0].sum() < of[0].size for of in flags.values()):
+        texts["convergence"] = f"How the probabilities of `{plan.laws[0].name}` settle with the number of flights."
+    return [_figure(folder, kind, plot_campaign(campaign, kind=kind), text) for kind, text in texts.items()]
 
 
 PAIRED = (

@@ -164,7 +164,6 @@ def _moves(model: LinearModel, mode: Mode) -> bool:
 
 def _scaled(motion: Motion, length: float) -> Motion:
     """Return a motion of the size that is drawn, at its largest displacement at phase zero."""
-    rest = motion.attitude
     small = 1e-4 / max(np.abs(motion.displacement).max() / length, np.abs(motion.turning).max(), 1e-300)
     slight = motion._replace(displacement=small * motion.displacement, turning=small * motion.turning)
     still = slight.ends(0.0)
@@ -174,7 +173,7 @@ def _scaled(motion: Motion, length: float) -> Motion:
     factor = small * turns[largest] * REACH * length / max(moved[largest], 1e-300)
     angle = np.abs(factor * motion.turning).max()
     factor *= min(1.0, LARGEST_ANGLE / max(angle, 1e-300))
-    return motion._replace(displacement=factor * motion.displacement, turning=factor * motion.turning, attitude=rest)
+    return motion._replace(displacement=factor * motion.displacement, turning=factor * motion.turning)
 
 
 def _corners(shape: ShipShape) -> Array:

@@ -4,14 +4,13 @@ Depends on: plotly, view.report_content, view.report_parts.
 """
 
 from collections.abc import Mapping, Sequence
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from plotly.offline import get_plotlyjs
 
 from tethership._version import __version__
-from tethership.errors import ConfigError
+from tethership.view.page_file import page_text, write_page_text
 from tethership.view.report_content import VERDICTS, Cell, Figure, Section, Table
 from tethership.view.report_parts import Placed, every_section, labelled, number_sections, section_html
 from tethership.view.report_text import Places, escaped, marked, plain
@@ -65,17 +64,9 @@ def write_report(
     >>> write_report(where, "Docking", ["Summary."], [section], {"tethership": "0.1"}).name
     'report.html'
     """
-    path = Path(path)
     placed = number_sections(sections)
     page = _page(title, abstract, placed, footer)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(page, encoding="utf-8")
-    except OSError as error:
-        raise ConfigError(
-            f"cannot write {path}: {error.strerror or error}; choose another folder with --out"
-        ) from error
-    return path
+    return write_page_text(path, page)
 
 
 def _page(title: str, abstract: Sequence[str], placed: list[Placed], footer: Mapping[str, Any]) -> str:
@@ -90,7 +81,7 @@ def _page(title: str, abstract: Sequence[str], placed: list[Placed], footer: Map
         f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f'<meta name="generator" content="tethership {__version__}">\n<title>{plain(title)}</title>\n'
-        f"<script>{_packaged('watch.js')}</script>\n<style>\n{_packaged('report.css')}</style>\n</head>\n<body>\n"
+        f"<script>{_packaged('watch.js')}</script>\n<style>\n{_packaged('palette.css')}{_packaged('report.css')}</style>\n</head>\n<body>\n"
         f"<header>\n<h1>{marked(title)}</h1>\n{_abstract(summary)}</header>\n"
         f"{_contents(placed, places)}\n<main>\n{body}\n</main>\n{_footer(footer)}\n"
         f"{library}<script>\n{_packaged('explore.js')}</script>\n</body>\n</html>\n"
@@ -99,7 +90,7 @@ def _page(title: str, abstract: Sequence[str], placed: list[Placed], footer: Map
 
 def _packaged(name: str) -> str:
     """Return the text of a packaged style or script."""
-    return (resources.files("tethership") / "data" / "report" / name).read_text(encoding="utf-8")
+    return page_text("report", name)
 
 
 def _abstract(summary: str) -> str:

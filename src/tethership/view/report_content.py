@@ -17,7 +17,6 @@ VERDICTS: Mapping[str, str] = {
     "met": "good",
     "inside": "good",
     "near": "fair",
-    "open": "fair",
     "undecided": "fair",
     "no verdict": "fair",
     "differs": "bad",

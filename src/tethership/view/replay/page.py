@@ -7,7 +7,6 @@ The scripts are in `data/replay`, one concern a file, and share one scope; three
 import html
 import json
 from collections.abc import Mapping, Sequence
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ from tethership._version import __version__
 from tethership.errors import ConfigError
 from tethership.simulation import Flight
 from tethership.view import style
+from tethership.view.page_file import page_text, write_page_text
 from tethership.view.replay.scene import scene
 
 SCRIPTS = (
@@ -79,17 +79,9 @@ def write_replay(flights: Flights, path: str | Path) -> Path:
     >>> ts.write_replay(flight, Path(tempfile.mkdtemp()) / "replay.html").name
     'replay.html'
     """
-    path = Path(path)
     named = _named(flights)
     page = replay_page([scene(flight, name) for name, flight in named])
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(page, encoding="utf-8")
-    except OSError as error:
-        raise ConfigError(
-            f"cannot write {path}: {error.strerror or error}; choose another folder with --out"
-        ) from error
-    return path
+    return write_page_text(path, page)
 
 
 def _named(flights: Flights) -> list[tuple[str, Flight]]:
@@ -111,13 +103,14 @@ def replay_page(scenes: list[dict[str, Any]]) -> str:
     data = {"flights": scenes, "colours": _colours(), "version": __version__}
     text = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
     own = "\n".join(_packaged(f"{name}.js") for name in SCRIPTS)
+    palette = page_text("report", "palette.css")
     title = html.escape(scenes[0]["title"])
     return (
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f'<meta name="generator" content="tethership {__version__}">\n<title>{title}: replay</title>\n'
-        f"<style>\n{_packaged('vendor/uplot.min.css')}\n{_packaged('replay.css')}</style>\n</head>\n"
+        f"<style>\n{_packaged('vendor/uplot.min.css')}\n{palette}{_packaged('replay.css')}</style>\n</head>\n"
         f"{_packaged('body.html')}"
         f"{_licensed('three')}{_licensed('uplot')}"
         f'<script type="application/json" id="flights">{text}</script>\n'
@@ -146,4 +139,4 @@ def _licensed(name: str) -> str:
 
 def _packaged(name: str) -> str:
     """Return the text of a packaged file of the replay."""
-    return (resources.files("tethership") / "data" / "replay" / name).read_text(encoding="utf-8")
+    return page_text("replay", name)

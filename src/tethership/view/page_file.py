@@ -1,0 +1,30 @@
+"""Pages on disk: what every page shares, its colours and how it is written. Depends on: errors."""
+
+from importlib import resources
+from pathlib import Path
+
+from tethership.errors import ConfigError
+
+
+def page_text(folder: str, name: str) -> str:
+    """Return the text of a packaged style, script or page of `data/FOLDER`."""
+    return (resources.files("tethership") / "data" / folder / name).read_text(encoding="utf-8")
+
+
+def write_page_text(path: str | Path, page: str) -> Path:
+    """Write a page and return where; its folder is made.
+
+    Raises
+    ------
+    ConfigError
+        It cannot be written.
+    """
+    path = Path(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(page, encoding="utf-8")
+    except OSError as error:
+        raise ConfigError(
+            f"cannot write {path}: {error.strerror or error}; choose another folder with --out"
+        ) from error
+    return path
