@@ -251,13 +251,14 @@ class Hand:
 
     def __init__(self):
         self.free = threading.Event()
+        self.deaf = threading.Event()
         self.jobs = []
 
     def run(self, job, progress, should_stop):
         self.jobs.append(job)
         progress("working", 0.5)
         while not self.free.wait(0.005):
-            if should_stop():
+            if should_stop() and not self.deaf.is_set():
                 raise Stopped("stopped")
         if job[2].get("wind.speed") == 13.0:
             raise SolveError("no equilibrium")
@@ -265,10 +266,11 @@ class Hand:
 
     def close(self):
         self.free.set()
+        self.deaf.clear()
 
 
 def until(condition):
-    end = time.monotonic() + 5.0
+    end = time.monotonic() + 30.0
     while not condition():
         assert time.monotonic() < end
         time.sleep(0.005)
@@ -322,6 +324,33 @@ def test_cancelled_and_failed_work_stays_so_until_it_is_asked_again(known, desk)
     bad = known.request("trim", Form("docking", {"wind.speed": "13"}), OVER)
     until(lambda: desk.ask("me", bad).status == "failed")
     assert desk.ask("me", bad).text == "no equilibrium"
+
+
+def test_the_end_of_a_cancelled_run_does_not_cancel_the_next_asking(known, desk):
+    request = known.request("flight", Form("docking", {}), OVER)
+    desk.ask("me", request)
+    until(lambda: desk.ask("me", request).text == "working")
+    desk.worker.deaf.set()
+    desk.cancel("me")
+    desk.forget(request)
+    assert desk.ask("me", request).status == "waiting"
+    desk.worker.deaf.clear()
+    until(lambda: len(desk.worker.jobs) == 2)
+    desk.worker.free.set()
+    until(lambda: desk.ask("me", request).status == "done")
+
+
+def test_a_slider_moved_there_and_back_computes_what_it_shows(known, desk):
+    there, back = (known.request("trim", Form("docking", {"wind.speed": str(speed)}), OVER) for speed in (8, 7))
+    desk.ask("me", back)
+    until(lambda: desk.ask("me", back).text == "working")
+    desk.worker.deaf.set()
+    desk.ask("me", there)
+    assert desk.ask("me", back).status == "waiting"
+    desk.worker.deaf.clear()
+    until(lambda: len(desk.worker.jobs) == 2)
+    desk.worker.free.set()
+    until(lambda: desk.ask("me", back).status == "done")
 
 
 @pytest.fixture

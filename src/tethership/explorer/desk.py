@@ -73,6 +73,9 @@ class Standing(NamedTuple):
         How long it took [s]; only of what has ended.
     result : Any
         Of what is done.
+    asking : int
+        Which asking it answers: a run that was dropped may end after the same request was asked for anew, and its
+        end says nothing about the new one.
     """
 
     request: Request
@@ -82,6 +85,7 @@ class Standing(NamedTuple):
     begun: float = 0.0
     seconds: float = 0.0
     result: Any = None
+    asking: int = 0
 
     @property
     def busy(self) -> bool:
@@ -104,6 +108,7 @@ class Desk:
         self._wanted: dict[tuple[str, str], Request] = {}
         self._seen: dict[Request, float] = {}
         self._running: Request | None = None
+        self._askings = 0
         self._stopping = False
         self._closed = False
         self._changed = threading.Condition()
@@ -120,7 +125,8 @@ class Desk:
                 self._drop(former)
             standing = self._standings.get(request)
             if standing is None:
-                standing = Standing(request, "waiting", "waiting", begun=time.monotonic())
+                self._askings += 1
+                standing = Standing(request, "waiting", "waiting", begun=time.monotonic(), asking=self._askings)
                 self._standings[request] = standing
                 self._trim_kept()
                 self._changed.notify_all()
@@ -172,43 +178,44 @@ class Desk:
             del self._standings[request]
         self._seen = {request: seen for request, seen in self._seen.items() if request in self._standings}
 
-    def _next(self) -> Request | None:
+    def _next(self) -> Standing | None:
         """Wait for work and return it; None where the desk closes."""
         with self._changed:
             while not self._closed:
-                waiting = [r for r, s in self._standings.items() if s.status == "waiting"]
+                waiting = [standing for standing in self._standings.values() if standing.status == "waiting"]
                 if waiting:
-                    self._running = min(waiting, key=lambda request: LAST[request.view])
+                    run = min(waiting, key=lambda standing: LAST[standing.request.view])
+                    self._running = run.request
                     self._stopping = False
-                    self._note(self._running, status="running", text="starting", begun=time.monotonic())
-                    return self._running
+                    self._note(run, status="running", text="starting", begun=time.monotonic())
+                    return run
                 self._changed.wait()
         return None
 
-    def _note(self, request: Request, **entries: Any) -> None:
-        """Write down how a request stands, unless it was cancelled or dropped meanwhile."""
+    def _note(self, run: Standing, **entries: Any) -> None:
+        """Write down how a run stands, unless it was cancelled, dropped or asked for anew meanwhile."""
         with self._changed:
-            standing = self._standings.get(request)
-            if standing is not None and standing.busy:
-                self._standings[request] = standing._replace(**entries)
+            standing = self._standings.get(run.request)
+            if standing is not None and standing.busy and standing.asking == run.asking:
+                self._standings[run.request] = standing._replace(**entries)
 
     def _work(self) -> None:
         """Compute requests until the desk closes."""
-        while (request := self._next()) is not None:
+        while (run := self._next()) is not None:
             begun = time.monotonic()
-            ended = self._outcome(request)
-            self._note(request, seconds=time.monotonic() - begun, share=None, **ended)
+            ended = self._outcome(run)
+            self._note(run, seconds=time.monotonic() - begun, share=None, **ended)
             with self._changed:
                 self._running = None
 
-    def _outcome(self, request: Request) -> dict[str, Any]:
-        """Return how a request ended."""
+    def _outcome(self, run: Standing) -> dict[str, Any]:
+        """Return how a run ended."""
 
         def progress(text: str, share: float | None) -> None:
-            self._note(request, text=text, share=share)
+            self._note(run, text=text, share=share)
 
         try:
-            result = self.worker.run(request.job(), progress, self._told_to_stop)
+            result = self.worker.run(run.request.job(), progress, self._told_to_stop)
         except Stopped:
             return {"status": "cancelled", "text": "cancelled"}
         except TethershipError as error:
