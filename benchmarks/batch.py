@@ -14,8 +14,8 @@ import tethership as ts
 from tethership.campaign import Cases, fly_cases, layer_switches, perturbed
 from tethership.fitting.targets import TABLES
 
-EACH = 192
-"""Flights of each row."""
+EACH = 168
+"""Flights of each row: a batch."""
 
 METRICS = ("tension_max", "tension_mean", "E", "theta_rms", "ADC")
 

@@ -18,9 +18,9 @@ import numpy as np
 import scipy.integrate
 
 import tethership as ts
-from tethership.campaign.answers import step_error
+from tethership.campaign.answers import exceeded, step_error
 from tethership.campaign.execute import fly_campaign, in_processes, in_this_process
-from tethership.campaign.flights import Flyer
+from tethership.campaign.flights import BATCH, Flyer
 from tethership.campaign.plan import Plan, make_plan
 from tethership.campaign.store import CampaignStore, open_results
 from tethership.scenario.laws import build_law
@@ -30,6 +30,12 @@ from tethership.simulation.docking import start_state
 SAMPLES = 1000
 LOOPED = 6
 """Cases that the loop over scipy flies."""
+
+STEPS = (0.05, 0.0625, 0.07)
+"""Steps [s] whose speed is set beside their error; the first is the default."""
+
+FINE = 0.0125
+"""Step [s] against whose flights those are counted that come to lie on the other side of a limit."""
 
 
 def flown(plan: Plan, hands: object) -> tuple[float, Path]:
@@ -53,6 +59,31 @@ def batch_times(plan: Plan) -> list[float]:
             flyer.fly(values)
             spent.append(time.perf_counter() - begun)
     return spent
+
+
+def stepped(samples: int, step: float, **changes: float) -> tuple[float, dict[str, np.ndarray], dict[str, object]]:
+    """Return × real time with a step, which flights exceed each limit, and errors beside adaptive flights."""
+    plan = make_plan("gusts", {"samples": samples, "step": {"value": step, "unit": "s"}, "verified": 0.0, **changes})
+    seconds, folder = flown(plan, in_this_process())
+    data = open_results(folder)
+    shutil.rmtree(folder)
+    return float(np.nansum(data["flight_time"])) / seconds, exceeded(plan, data), step_error(data)
+
+
+def by_step(samples: int) -> dict[float, dict[str, float]]:
+    """Return for each step its speed (best of three), worst median error, and flights on another side of a limit."""
+    _, fine, _ = stepped(samples, FINE)
+    found = {}
+    for step in STEPS:
+        runs = [stepped(samples, step) for _ in range(3)]
+        errors = stepped(samples, step, verified=0.1)[2]
+        found[step] = {
+            "x_real_time": max(run[0] for run in runs),
+            "slowest_x_real_time": min(run[0] for run in runs),
+            "worst_median_error": max(e["median"] for e in errors.values() if isinstance(e, dict)),
+            "crossed": {name: int(np.sum(runs[0][1][name] != fine[name])) for name in fine},
+        }
+    return found
 
 
 def scipy_rate(plan: Plan) -> float:
@@ -97,7 +128,7 @@ def main() -> None:
     """Print the figures; with --json as one object."""
     samples = int(sys.argv[sys.argv.index("--samples") + 1]) if "--samples" in sys.argv else SAMPLES
     bare = {"verified": 0.0}
-    flown(make_plan("gusts", {"samples": 192, **bare}), in_this_process())
+    flown(make_plan("gusts", {"samples": 2 * BATCH, **bare}), in_this_process())
     result: dict[str, object] = {"cases": {}, "workers": {}}
     for count in (samples // 4, samples // 2, samples, 2 * samples):
         plan = make_plan("gusts", {"samples": count, **bare})
@@ -114,7 +145,7 @@ def main() -> None:
     result["worst_over_best_batch"] = max(spent) / min(spent)
     for workers in (1, 2):
         with in_processes(workers) as hands:
-            warm = make_plan("gusts", {"samples": 192 * 2, **bare})
+            warm = make_plan("gusts", {"samples": 6 * BATCH, **bare})  # so that every worker has flown one
             folder = Path(tempfile.mkdtemp())
             fly_campaign(warm, CampaignStore(folder, warm), hands)
             folder = Path(tempfile.mkdtemp())
@@ -124,6 +155,7 @@ def main() -> None:
     checked = make_plan("gusts", {"samples": samples, "verified": 0.05})
     _, folder = flown(checked, in_this_process())
     result["step_error"] = step_error(open_results(folder))
+    result["steps"] = by_step(samples)
     result["scipy_x_real_time"] = scipy_rate(plan)
     needed, peak = flop_bound(plan)
     result["flops_per_flight_second"], result["machine_flops"] = needed, peak

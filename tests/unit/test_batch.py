@@ -5,8 +5,8 @@ import pytest
 
 import tethership as ts
 from tethership.campaign import Cases, fly_cases, layer_switches, perturbed
-from tethership.campaign.flights import SWITCHES
-from tethership.simulation.batch import CODES
+from tethership.campaign.flights import SWITCHES, Flyer
+from tethership.simulation.batch import CODES, WIDE
 
 LAYERS = (("rewind",), ("rewind", "heading", "navigation"))
 
@@ -47,6 +47,24 @@ def test_neighbours_change_nothing(docking, flown):
     alone = fly_cases(docking, Cases(("wind.speed", *switches), np.array([[6.0, *switches.values()]])))
     for name, value in alone.items():
         np.testing.assert_allclose(value[0], flown[name][0], rtol=1e-9)
+
+
+def test_stragglers_of_a_wide_batch_fly_on_alone(docking):
+    """Winches from fast to slow, some too slow for the time limit: the last quarter ends as in a small batch."""
+    switches = layer_switches(docking, LAYERS[0])
+    names = (*switches, "cables.nose.winch.rewind_rate")
+    rates = np.linspace(0.5, 0.33, WIDE) - np.where(np.arange(WIDE) % 7 == 0, 0.1, 0.0)
+    values = np.column_stack([np.tile(list(switches.values()), (WIDE, 1)), rates])
+    short = docking.changed({"stop.time_limit": 60.0})
+    wide = Flyer(short, names, values[0], WIDE).fly(values)
+    narrow = Flyer(short, names, values[0], 24)
+    parts = [narrow.fly(values[first : first + 24]) for first in range(0, WIDE, 24)]
+    assert {CODES[code] for code in wide["outcome"]} == {ts.Outcome.docked, ts.Outcome.time_limit}
+    assert np.ptp(wide["flight_time"]) > 20.0
+    for name, array in wide.items():
+        np.testing.assert_allclose(
+            array, np.concatenate([part[name] for part in parts]), rtol=1e-7, atol=1e-9, err_msg=name
+        )
 
 
 def test_zero_gains_are_no_layer(docking):

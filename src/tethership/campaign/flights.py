@@ -26,7 +26,7 @@ from tethership.simulation.batch import STEP, differing, fly_lanes, hoisted, met
 from tethership.simulation.closed_loop import ClosedLoop
 from tethership.simulation.docking import moved_start, stop_conditions
 
-BATCH = 192
+BATCH = 168
 """Flights of one compiled call: fixed, so that every campaign runs the same program."""
 
 FEW = 24

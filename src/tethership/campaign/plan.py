@@ -133,7 +133,14 @@ class Plan(NamedTuple):
 
     def digest(self) -> str:
         """Return what tells this campaign from another: everything that goes into its numbers."""
-        whole = [__version__, self.document, self.scenario.document, self.names, [law.name for law in self.laws]]
+        whole = [
+            __version__,
+            self.lanes,
+            self.document,
+            self.scenario.document,
+            self.names,
+            [law.name for law in self.laws],
+        ]
         text = json.dumps(whole, sort_keys=True, default=str)
         return hashlib.sha256(text.encode() + self.values.tobytes()).hexdigest()
 

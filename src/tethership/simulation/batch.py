@@ -2,7 +2,7 @@
 
 The batch is the last axis of every array. What is the same in all flights is not repeated (`hoisted`), so that the
 hull's shape or the anchors' places are read once for all. Every flight ends by the same conditions as a single one;
-the batch goes on until the last has ended.
+the batch goes on until three of four have ended, then the rest go on without them.
 """
 
 from typing import NamedTuple
@@ -20,6 +20,13 @@ from tethership.simulation.tally import Signals, Tally, add, begin, signals
 
 STEP = 0.025
 """Length of a step [s], the paper's largest."""
+
+STRAGGLERS = 4
+"""When no more than one flight in so many is under way, those go on by themselves: a few that end late would
+otherwise cost as many steps of all."""
+
+WIDE = 96
+"""Flights of the narrowest batch for which that is worth a second loop to compile."""
 
 CODES = (*MARGINS, Outcome.time_limit, Outcome.diverged)
 """Outcomes by the number that a batch gives."""
@@ -154,15 +161,32 @@ def fly_lanes(
     lanes = jax.vmap(_started, in_axes=(axes, None, None, -1), out_axes=-1)(loops, stop, limits, vectors)
     advance = jax.vmap(_stepped, in_axes=(axes, None, None, None, -1, None), out_axes=-1)
 
-    def unfinished(carry: tuple[Array, Lane]) -> Array:
-        return jnp.any(carry[1].active) & (carry[0] * step < time_limit - 1e-9)
+    def onward(loops: ClosedLoop, count: Int[Array, ""], lanes: Lane, fewest: int) -> tuple[Int[Array, ""], Lane]:
+        """Fly from a number of steps on until no more than so many flights are under way, or the time is up."""
 
-    def forward(carry: tuple[Array, Lane]) -> tuple[Array, Lane]:
-        count, now = carry
-        return count + 1, advance(loops, stop, limits, count * step, now, step)
+        def unfinished(carry: tuple[Array, Lane]) -> Array:
+            return (jnp.sum(carry[1].active) > fewest) & (carry[0] * step < time_limit - 1e-9)
 
-    _, lanes = jax.lax.while_loop(unfinished, forward, (jnp.zeros((), int), lanes))
+        def forward(carry: tuple[Array, Lane]) -> tuple[Array, Lane]:
+            count, now = carry
+            return count + 1, advance(loops, stop, limits, count * step, now, step)
+
+        return jax.lax.while_loop(unfinished, forward, (count, lanes))
+
+    few = vectors.shape[-1] // STRAGGLERS if vectors.shape[-1] >= WIDE else 0
+    count, lanes = onward(loops, jnp.zeros((), int), lanes, few)
+    if few:
+        last = jnp.argsort(~lanes.active)[:few]
+        _, ended = onward(_picked(loops, axes, last), count, jax.tree.map(lambda leaf: leaf[..., last], lanes), 0)
+        lanes = jax.tree.map(lambda leaf, new: leaf.at[..., last].set(new), lanes, ended)
     return BatchResult(lanes.tally, lanes.outcome)
+
+
+def _picked(loops: ClosedLoop, axes: ClosedLoop, which: Int[Array, "few"]) -> ClosedLoop:
+    """Return the loops of some flights of a batch; what all share stays as it is."""
+    return jax.tree.map(
+        lambda axis, leaf: leaf if axis is None else leaf[..., which], axes, loops, is_leaf=lambda axis: axis is None
+    )
 
 
 def differing(loops: ClosedLoop) -> tuple[bool, ...]:
