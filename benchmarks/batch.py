@@ -12,10 +12,11 @@ import numpy as np
 
 import tethership as ts
 from tethership.campaign import Cases, fly_cases, layer_switches, perturbed
+from tethership.campaign.flights import BATCH
 from tethership.fitting.targets import TABLES
 
-EACH = 168
-"""Flights of each row: a batch."""
+EACH = BATCH
+"""Flights of each row: whole batches, so that no lane flies twice."""
 
 METRICS = ("tension_max", "tension_mean", "E", "theta_rms", "ADC")
 

@@ -70,7 +70,7 @@ def stepped(samples: int, step: float, **changes: float) -> tuple[float, dict[st
     return float(np.nansum(data["flight_time"])) / seconds, exceeded(plan, data), step_error(data)
 
 
-def by_step(samples: int) -> dict[float, dict[str, float]]:
+def by_step(samples: int) -> dict[float, dict[str, object]]:
     """Return for each step its speed (best of three), worst median error, and flights on another side of a limit."""
     _, fine, _ = stepped(samples, FINE)
     found = {}

@@ -92,6 +92,13 @@ def test_same_seed_same_cases_and_another_seed_others(planned, sampling):
     assert first.digest() != other.digest()
 
 
+def test_batches_of_another_width_are_another_store(planned, monkeypatch):
+    plan = planned(HEAD + WIND + START, samples=100)
+    before = plan.digest()
+    monkeypatch.setattr("tethership.campaign.plan.BATCH", 192)
+    assert plan.digest() != before
+
+
 @pytest.mark.parametrize("sampling", ["sobol", "latin_hypercube"])
 def test_spread_samplings_come_in_replicates_that_each_fill_the_box(planned, sampling):
     sample = planned(HEAD + WIND + START, sampling=sampling).sample

@@ -1,4 +1,4 @@
-"""The Dash app: what is typed becomes requests, how they stand becomes the page. Depends on: dash, explorer."""
+"""The Dash app: what is typed becomes requests, how they stand becomes the page. Depends on: dash, explorer, view."""
 
 from importlib import resources
 from typing import Any
@@ -15,6 +15,7 @@ from tethership.explorer.panel import field, panel
 from tethership.explorer.showing import TEXTS, Showing, request_key
 from tethership.explorer.understanding import Understanding
 from tethership.explorer.views import verdict
+from tethership.view.page_file import page_text
 
 FIELDS = {"name": ALL, "part": "field"}
 """All fields of the panel, in the same order."""
@@ -49,6 +50,8 @@ def make_app(known: Understanding, desk: Desk, scenario: str) -> Dash:
         add_log_handler=False,
         enable_mcp=False,
     )
+    palette = page_text("report", "palette.css")
+    app.index_string = app.index_string.replace("{%css%}", f"<style>\n{palette}</style>\n{{%css%}}")
     folder = known.folder
     app.layout = lambda: page(known.base(scenario), scenario, folder.scenarios(), str(folder.root), __version__)
     _panel_callbacks(app, known)
