@@ -16,14 +16,14 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from tethership.analysis.equilibrium import EFFORT, RESIDUAL_LIMIT, Problem, described
+from tethership.analysis.equilibrium import EFFORT, Problem, described
 from tethership.analysis.linearize import comparable_coordinates
 from tethership.analysis.posing import Question, pose
 from tethership.analysis.right_side import input_vector, right_side
 from tethership.scenario import ScenarioConfig
 from tethership.scenario.build import build_system
 from tethership.scenario.parameters import with_values
-from tethership.spatial import STANDARD_GRAVITY
+from tethership.system.balance import DRIFT_LIMIT, residual_limit
 
 BATCH = 128
 """Points of one compiled call: fixed, so that every sweep runs the same program."""
@@ -54,12 +54,16 @@ class Batch(NamedTuple):
         Solution in the unknowns' units.
     state : array
         Twelve states.
-    throttle : array
-        δ [-], not clipped.
-    tension : array
-        Tension of each cable [N].
+    throttle, deflection : array
+        δ [-] of thrusters and [rad] of fins, not clipped.
+    tension, largest : array
+        Tension of each cable at its tether point, and the largest along it [N].
     residual : array
-        Force and moment left over with throttles not clipped [N, N m].
+        Force and moment left over with commands not clipped [N, N m].
+    drift : array
+        Rates of what must stand still [rad/s, m/s].
+    hull, cables : array
+        Height of the lowest point of the hull and of each cable above the ground [m].
     limit : array
         Largest residual of an equilibrium [N, N m].
     matrix : array
@@ -71,8 +75,13 @@ class Batch(NamedTuple):
     unknowns: Any
     state: Any
     throttle: Any
+    deflection: Any
     tension: Any
+    largest: Any
     residual: Any
+    drift: Any
+    hull: Any
+    cables: Any
     limit: Any
     matrix: Any
     comparable: Any
@@ -117,21 +126,25 @@ def _solve_batch(
     """Return a batch of trims with their state matrices; `places` are the leaves that each parameter moves."""
 
     def point(value: Float[Array, "parameters"], start: Float[Array, "unknowns"]) -> Batch:
-        here = with_values(config, places, value)
-        plant = build_system(here)
-        problem = pose(here, plant, question)
+        numbers = with_values(config, places, value)
+        plant = build_system(numbers)
+        problem = pose(numbers, plant, question)
         found = nearby_equilibrium(problem, start)
-        state, command, tension, residual, _ = described(problem, found)
-        vector, inputs = state.as_vector(), input_vector(plant, command)
+        here = described(problem, found)
+        vector, inputs = here.state.as_vector(), input_vector(plant, here.command)
         matrix = jax.jacfwd(lambda s: right_side(plant, s, inputs))(vector)
-        weight = jnp.maximum(plant.ship.gravity.mass * STANDARD_GRAVITY, 1.0)
         return Batch(
             found,
             vector,
-            command.throttle,
-            tension,
-            residual,
-            RESIDUAL_LIMIT * weight,
+            here.command.throttle,
+            here.command.deflection,
+            here.tension,
+            here.largest,
+            here.residual,
+            here.drift,
+            here.hull,
+            here.cables,
+            residual_limit(plant),
             matrix,
             comparable_coordinates(plant, vector),
         )
@@ -279,6 +292,7 @@ def _branch(unknowns: np.ndarray, good: np.ndarray, nearest: np.ndarray, line: n
 def in_equilibrium(batch: Batch) -> np.ndarray:
     """Return which points (first axis) are in equilibrium, with a state matrix that is finite."""
     small = np.abs(batch.residual).max(axis=1) <= batch.limit
+    small &= np.abs(batch.drift).max(axis=1) <= DRIFT_LIMIT
     return small & np.isfinite(batch.matrix).all(axis=(1, 2))
 
 

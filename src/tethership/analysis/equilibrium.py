@@ -1,10 +1,11 @@
-"""The trim problem and its solution: residual, exact Jacobian, search. Depends on: analysis.unknowns, system.
+"""The trim problem and its solution: balance, exact Jacobian, search. Depends on: analysis.unknowns, system.
 
-The residual is the sum of all loads less the gyroscopic term, (f, m) about P in body axes. Thrust is *not* clipped:
-a throttle beyond its limit is the answer to how much is missing.
+Balanced are the forces and moments about P, and what must stand still where it is looked for (`system.balance`).
+Commands are *not* clipped: a throttle beyond its limit is the answer to how much is missing.
 """
 
 import itertools
+from typing import NamedTuple
 
 import equinox as eqx
 import jax
@@ -16,9 +17,8 @@ from jaxtyping import Array, Float
 from tethership.analysis.unknowns import Unknowns
 from tethership.spatial import STANDARD_GRAVITY, rotation_matrix, safe_norm
 from tethership.system import Command, State, TetheredAirship
-
-RESIDUAL_LIMIT = 1e-6
-"""Largest residual of an equilibrium, as a fraction of 1 N and 1 N m per newton of weight."""
+from tethership.system.balance import RESIDUAL_LIMIT, drift, residual
+from tethership.system.tethered import end_tension
 
 EFFORT = 1e-3
 """Weight of the throttles beside the residual, which is in units of 1e-3 of the weight: small enough to move the
@@ -57,18 +57,22 @@ class Problem(eqx.Module):
             state = State(state.velocity, state.rates, state.attitude, state.position + moved)
         return state, Command(everything[12 : 12 + count], everything[12 + count :])
 
-    def residual(self, state: State, command: Command) -> Float[Array, "6"]:
-        """Return the unbalanced force and moment [N, N m]."""
-        plant, now = self.plant, jnp.zeros(())
-        cables = plant.cable_states(now, state, plant.initial_lengths())
-        loads = plant.wrenches(now, state, command, cables)
-        left = plant.ship.body.gyroscopic(state.velocity, state.rates).as_vector()
-        return sum((load.as_vector() for load in loads.values()), -left)
+    def balance(self, values: Float[Array, "unknowns"]) -> Float[Array, "balances"]:
+        """Return the residual for values of the unknowns, in units of 1e-3 of the weight [-].
 
-    def balance(self, values: Float[Array, "unknowns"]) -> Float[Array, "6"]:
-        """Return the residual for values of the unknowns, in units of 1e-3 of the weight [-]."""
+        Where motion is looked for, the rates of what must stand still follow, in units of 1e-3 rad/s and m/s.
+        """
         unit = 1e-3 * self.plant.ship.gravity.mass * STANDARD_GRAVITY
-        return self.residual(*self.unpack(values)) / unit
+        state, command = self.unpack(values)
+        left = residual(self.plant, state, command) / unit
+        if not any(place in self.moving for place in self.unknowns.index):
+            return left
+        return jnp.concatenate([left, drift(self.plant, state) / 1e-3])
+
+    @property
+    def moving(self) -> range:
+        """Places of the quantities that move what must stand still: rates, and on a cable the velocity."""
+        return range(0 if self.plant.cables else 3, 6)
 
 
 @eqx.filter_jit
@@ -142,12 +146,53 @@ def _polished(problem: Problem, found: np.ndarray) -> np.ndarray:
     return found
 
 
+class Described(NamedTuple):
+    """What there is at a solution of a trim.
+
+    Attributes
+    ----------
+    state, command
+        Of the ship; the command as it was found, not clipped.
+    tension, largest : Float[Array, "cables"]
+        Tension at each tether point, and the largest along each cable [N].
+    residual, clipped : Float[Array, "6"]
+        Force and moment left over with the command as found and clipped to its limits [N, N m].
+    drift : Float[Array, "motions"]
+        Rates of what must stand still, as `system.balance.drift` [rad/s, m/s].
+    hull : Float[Array, ""]
+        Height of the hull's lowest point above the ground [m].
+    cables : Float[Array, "cables"]
+        The same of each cable [m].
+    """
+
+    state: State
+    command: Command
+    tension: Float[Array, "cables"]
+    largest: Float[Array, "cables"]
+    residual: Float[Array, "6"]
+    clipped: Float[Array, "6"]
+    drift: Float[Array, "motions"]
+    hull: Float[Array, ""]
+    cables: Float[Array, "cables"]
+
+
 @eqx.filter_jit
-def described(problem: Problem, values: Float[Array, "unknowns"]) -> tuple[State, Command, Array, Array, Array]:
-    """Return state, command, tensions, and the residual without and with clipped throttles."""
+def described(problem: Problem, values: Float[Array, "unknowns"]) -> Described:
+    """Return what there is for values of the unknowns, in their units."""
     state, command = problem.unpack(values)
-    plant = problem.plant
-    cables = plant.cable_states(jnp.zeros(()), state, plant.initial_lengths())
-    tension = jnp.stack([safe_norm(c.ship) for c in cables]) if cables else jnp.zeros(0)
-    clipped = Command(plant.ship.thrusters.saturate(command.throttle), command.deflection)
-    return state, command, tension, problem.residual(state, command), problem.residual(state, clipped)
+    plant, ground = problem.plant, problem.plant.environment.ground
+    lengths = plant.initial_lengths()
+    cables = plant.cable_states(jnp.zeros(()), state, lengths)
+    none = jnp.zeros(0)
+    lowest = [c.lowest_point(s, lengths[i])[2] for i, (c, s) in enumerate(zip(plant.cables, cables, strict=True))]
+    return Described(
+        state,
+        command,
+        jnp.stack([safe_norm(c.ship) for c in cables]) if cables else none,
+        jnp.stack([end_tension(c) for c in cables]) if cables else none,
+        residual(plant, state, command),
+        residual(plant, state, plant.ship.allowed(command)),
+        drift(plant, state),
+        ground - plant.ship.lowest_point(state),
+        ground - jnp.stack(lowest) if lowest else none,
+    )

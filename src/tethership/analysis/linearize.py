@@ -12,16 +12,16 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from tethership.analysis.differences import central_differences
-from tethership.analysis.equilibrium import RESIDUAL_LIMIT
 from tethership.analysis.linear_model import LinearModel
 from tethership.analysis.right_side import WIND_INPUTS, WIND_UNITS, input_vector, loads, right_side
 from tethership.analysis.semi_analytic import semi_analytic
 from tethership.analysis.trim import TrimOutcome, TrimPoint
 from tethership.errors import ConfigError, suggestion
 from tethership.scenario import Scenario
-from tethership.spatial import STANDARD_GRAVITY, rotation_matrix
+from tethership.spatial import rotation_matrix
 from tethership.system import Command, State, TetheredAirship
 from tethership.system.airship import mass_matrix
+from tethership.system.balance import DRIFT_LIMIT, drift, left_over, residual_limit
 from tethership.system.state import STATE_NAMES, STATE_UNITS
 
 ROUTES = ("exact", "semi_analytic", "differences")
@@ -145,7 +145,7 @@ def linearize(
         left = np.abs(np.asarray(point.residual))
         raise ConfigError(
             f"linearize: the trim found no equilibrium: {left[:3].max():.3g} N and {left[3:].max():.3g} N m are left "
-            "over; free more quantities (trim.unknowns) or start its search elsewhere (trim.position)"
+            f"over. {point.message}"
         )
     plant = system.system if isinstance(system, Scenario) else system
     state, command = (point.state, point.command) if isinstance(point, TrimPoint) else point
@@ -155,7 +155,7 @@ def linearize(
     exact, comparable, residual, mass = _exact(plant, vector, inputs)
     _check_dividable(np.asarray(mass), float(state.attitude[1]))
     if require_equilibrium:
-        _check_equilibrium(plant, np.asarray(residual))
+        _check_equilibrium(plant, state, np.asarray(residual))
     matrices = _by_route(route, exact, plant, vector, inputs)
     names, units = _inputs(system)
     model = LinearModel(
@@ -188,16 +188,17 @@ def _check_dividable(mass: np.ndarray, pitch: float) -> None:
         )
 
 
-def _check_equilibrium(plant: TetheredAirship, residual: np.ndarray) -> None:
+def _check_equilibrium(plant: TetheredAirship, state: State, residual: np.ndarray) -> None:
     """Raise ConfigError where a point is not in equilibrium."""
+    limit, moving = float(residual_limit(plant)), np.asarray(drift(plant, state))
     if not np.isfinite(residual).all():
         raise ConfigError("linearize: the point has loads that are not finite; check its state")
     force, moment = np.abs(residual[:3]).max(), np.abs(residual[3:]).max()
-    limit = RESIDUAL_LIMIT * max(float(plant.ship.gravity.mass) * STANDARD_GRAVITY, 1.0)
-    if max(force, moment) > limit:
+    if max(force, moment) > limit or np.abs(moving).max() > DRIFT_LIMIT:
         raise ConfigError(
             f"linearize: the point is not in equilibrium: {force:.3g} N and {moment:.3g} N m are left over (at most "
-            f"{limit:.2g}); give the point that trim() returns, or require_equilibrium=False"
+            f"{limit:.2g}): {left_over(residual, moving, limit)}; give the point that trim() returns for this "
+            "scenario, or require_equilibrium=False"
         )
 
 

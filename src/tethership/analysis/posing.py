@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from tethership.analysis.equilibrium import Problem
-from tethership.analysis.unknowns import Unknowns, find_places, find_unknowns
+from tethership.analysis.unknowns import DOWN, Unknowns, find_places, find_unknowns
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario, ScenarioConfig
 from tethership.scenario.schema import TrimConfig
@@ -42,6 +42,11 @@ class Question(NamedTuple):
     heading_free: bool
     places: tuple[int, ...]
     values: Float[Array, "given"]
+
+    @property
+    def height_sought(self) -> bool:
+        """Whether the height of P is looked for."""
+        return DOWN in self.unknowns.index
 
 
 def ask(

@@ -15,6 +15,7 @@ import numpy as np
 from tethership.analysis.continuation import Batch, in_equilibrium, solve_points
 from tethership.analysis.events import find_events
 from tethership.analysis.grid import Axis, fill_lines, lay_grid, usual_places
+from tethership.analysis.judgement import limits_passed
 from tethership.analysis.mode_names import assign, mode_name, slots_of, track_names
 from tethership.analysis.posing import Question, ask
 from tethership.analysis.spectrum import Complex
@@ -26,10 +27,12 @@ from tethership.analysis.tracking import (
     named_order,
     participation,
 )
-from tethership.analysis.trim import TrimOutcome, solved
+from tethership.analysis.trim import solved
+from tethership.analysis.trim_outcome import Points, TrimOutcome, outcomes
 from tethership.errors import ConfigError, TethershipError
 from tethership.scenario import Scenario
 from tethership.scenario.parameters import Parameter, find_parameter, list_parameters, scenario_at
+from tethership.system import Command
 from tethership.system.state import STATE_NAMES
 
 FINE = 160
@@ -82,8 +85,14 @@ class Sweep:
         λ [1/s], complex, shape (points, tracks); NaN where there is no equilibrium (see `outcomes`).
     outcomes : tuple of TrimOutcome
         How each point's trim ended: points without one stay.
-    states, throttle, tension, residual : ndarray
-        The trims: twelve states, δ [-] (not clipped), tensions [N], force and moment left over [N, N m].
+    states, throttle, deflection, tension, residual : ndarray
+        The trims: twelve states, δ [-] and [rad] (not clipped), tensions [N], force and moment left over [N, N m].
+    largest : ndarray
+        Largest tension along each cable [N].
+    clearance_hull : ndarray
+        Height of the hull's lowest point above the ground [m], NaN without ground; shape (points,).
+    clearance_cable : ndarray
+        The same of the cables' lowest point [m], NaN without cables.
     matrices : ndarray
         A at every point, shape (points, 12, 12).
     path : Path
@@ -104,8 +113,12 @@ class Sweep:
     outcomes: tuple[TrimOutcome, ...]
     states: np.ndarray
     throttle: np.ndarray
+    deflection: np.ndarray
     tension: np.ndarray
+    largest: np.ndarray
     residual: np.ndarray
+    clearance_hull: np.ndarray
+    clearance_cable: np.ndarray
     matrices: np.ndarray
     path: Path
     orders: np.ndarray
@@ -146,6 +159,14 @@ class Sweep:
                     found[point] = self.path.values[point][place]
                     break
         return found
+
+    def limits_passed(self, point: int) -> dict[str, float]:
+        """Return tension over limit [-] of every watched limit that a point passes; nothing without an equilibrium."""
+        if not self.path.valid[point]:
+            return {}
+        moved = any(name.startswith("limits.") or name.endswith(".breaking_force") for name in self.values)
+        config = self.at(point).config if moved else self.scenario.config
+        return limits_passed(config, self.tension[point], self.largest[point])
 
     def at(self, point: int) -> Scenario:
         """Return the scenario of one point, to be trimmed, linearised or flown."""
@@ -198,6 +219,7 @@ def sweep(scenario: Scenario, *axes: Axis) -> Sweep:
     events = [event for line in lines for event in _happenings(path, orders, line, fine, names, tracks)]
     kept = np.concatenate([np.arange(line.start, line.stop, fill) for line in lines])
     valid = path.valid[kept]
+    found = Batch(*(array[kept] for array in batch))
     return Sweep(
         scenario=scenario,
         axes=tuple(tuple(_full_name(scenario, name) for name in axis) for axis in axes),
@@ -206,12 +228,16 @@ def sweep(scenario: Scenario, *axes: Axis) -> Sweep:
         shape=shape,
         tracks=tuple(tracks),
         eigenvalues=np.where(valid[:, None], ordered[kept], np.nan),
-        outcomes=_outcomes(scenario, batch.throttle[kept], valid),
-        states=batch.state[kept],
-        throttle=batch.throttle[kept],
-        tension=batch.tension[kept],
-        residual=batch.residual[kept],
-        matrices=batch.matrix[kept],
+        outcomes=_outcomes(scenario, found, valid, question.height_sought),
+        states=found.state,
+        throttle=found.throttle,
+        deflection=found.deflection,
+        tension=found.tension,
+        largest=found.largest,
+        residual=found.residual,
+        clearance_hull=found.hull if scenario.config.has_ground() else np.full(len(kept), np.nan),
+        clearance_cable=found.cables.min(axis=1) if found.cables.shape[1] else np.full(len(kept), np.nan),
+        matrices=found.matrix,
         path=Path(*(array[kept] for array in path)),
         orders=orders[kept],
         events=tuple(events),
@@ -305,12 +331,14 @@ def local_names(path: Path, point: int) -> list[str]:
     return names
 
 
-def _outcomes(scenario: Scenario, throttle: np.ndarray, valid: np.ndarray) -> tuple[TrimOutcome, ...]:
-    """Return how each point's trim ended."""
-    thrusters = scenario.system.ship.thrusters
-    allowed = np.asarray(jax.vmap(thrusters.saturate)(jnp.asarray(throttle)))
-    saturated = (allowed != throttle).any(axis=1)
+def _outcomes(scenario: Scenario, found: Batch, valid: np.ndarray, height_sought: bool) -> tuple[TrimOutcome, ...]:
+    """Return how each point's trim ended; one that is not on its line's branch has no equilibrium."""
+    allowed = jax.vmap(scenario.system.ship.allowed)(
+        Command(jnp.asarray(found.throttle), jnp.asarray(found.deflection))
+    )
+    over = (np.asarray(allowed.throttle) != found.throttle).any(axis=1)
+    over |= (np.asarray(allowed.deflection) != found.deflection).any(axis=1)
+    points = Points(found.residual, found.drift, found.hull, found.cables)
     return tuple(
-        (TrimOutcome.saturated if over else TrimOutcome.converged) if good else TrimOutcome.no_equilibrium
-        for good, over in zip(valid, saturated, strict=True)
+        outcomes(points, over, np.where(valid, found.limit, -1.0), scenario.config.has_ground(), height_sought)
     )

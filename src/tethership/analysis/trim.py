@@ -1,33 +1,22 @@
 """Trim: the equilibrium of a ship, with any unknowns against any fixed quantities. Depends on: system, scenario."""
 
-import enum
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from tethership.analysis.equilibrium import RESIDUAL_LIMIT, described, solve
+from tethership.analysis.equilibrium import described, solve
+from tethership.analysis.judgement import judge
 from tethership.analysis.posing import Question, ask, posed
+from tethership.analysis.trim_outcome import TrimOutcome
 from tethership.errors import SolveError
 from tethership.scenario import Scenario
-from tethership.spatial import STANDARD_GRAVITY
-from tethership.system import Command, State, TetheredAirship
+from tethership.system import Command, State
+from tethership.system.balance import residual_limit
 
-
-class TrimOutcome(enum.Enum):
-    """How a trim ended; the value is a sentence with the cure where one is needed."""
-
-    converged = "In equilibrium."
-    saturated = (
-        "In equilibrium only with more thrust than there is; the named thrusters lack it. "
-        "Less wind, a slacker cable or more nominal thrust are needed."
-    )
-    no_equilibrium = (
-        "No equilibrium with these unknowns; the residual is what is left. "
-        "Free more quantities (trim.unknowns) or start the search elsewhere (trim.position)."
-    )
+__all__ = ["TrimOutcome", "TrimPoint", "solved", "trim"]
 
 
 class TrimPoint(NamedTuple):
@@ -38,15 +27,23 @@ class TrimPoint(NamedTuple):
     state : State
         The twelve states.
     command : Command
-        Throttles [-] (beyond their limits where saturated) and deflections [rad].
+        Throttles [-] and deflections [rad], beyond their limits where saturated.
     tension : Float[Array, "cables"]
         Tension at each tether point [N].
     residual : Float[Array, "6"]
-        Force and moment left over, about P, body axes, with throttles clipped to their limits [N, N m].
+        Force and moment left over, about P, body axes, with commands clipped to their limits [N, N m].
     saturated : tuple of str
-        Thrusters asked for more than they have.
+        Thrusters and fins asked for more than they have.
     outcome : TrimOutcome
         Whether this is an equilibrium.
+    message : str
+        How it ended, by how much, and the cure.
+    warnings : tuple of str
+        What must be known of it before it is used: limits passed, a cable below the ground.
+    limits_passed : dict[str, float]
+        Tension over limit [-] of every watched limit (`results.limits`) that is passed.
+    clearance_hull, clearance_cable : float or None
+        Height of the lowest points of hull and cables above the ground [m]; None without ground or cable.
     """
 
     state: State
@@ -55,6 +52,11 @@ class TrimPoint(NamedTuple):
     residual: Float[Array, "6"]
     saturated: tuple[str, ...]
     outcome: TrimOutcome
+    message: str
+    warnings: tuple[str, ...]
+    limits_passed: dict[str, float]
+    clearance_hull: float | None
+    clearance_cable: float | None
 
 
 def trim(
@@ -80,8 +82,9 @@ def trim(
     Notes
     -----
     Where heading is looked for, the search starts with the nose into the wind and downwind of the anchor: an
-    aerostat has other equilibria too. Where there are more unknowns than equations, the throttles and deflections of
-    least Euclidean norm are taken.
+    aerostat has other equilibria too. The attitude must stand still, and on a cable the ship (`system.balance`): a
+    point with rates is none, nor is one below the ground. Where there are more unknowns than equations, the throttles
+    and deflections of least Euclidean norm are taken.
 
     Raises
     ------
@@ -99,28 +102,26 @@ def trim(
     """
     _, point = solved(scenario, ask(scenario, unknowns, fixed))
     if throw and point.outcome is TrimOutcome.no_equilibrium:
-        raise SolveError(f"{point.outcome.value} Residual: {np.asarray(point.residual)} N, N m")
+        raise SolveError(f"{point.message} Residual: {np.asarray(point.residual)} N, N m")
     return point
 
 
 def solved(scenario: Scenario, question: Question) -> tuple[np.ndarray, TrimPoint]:
     """Return the unknowns, in their units, and the point that answer what a scenario's trim asks."""
-    thrusters = [thruster.name for thruster in scenario.config.vehicle.thrusters]
     problem = posed(scenario.config.as_arrays(), scenario.system, question)
     values = solve(problem)
-    return values, _judged(scenario.system, thrusters, *described(problem, jnp.asarray(values)))
-
-
-def _judged(plant: TetheredAirship, thrusters: list[str], *found: Any) -> TrimPoint:
-    """Return the point with its outcome."""
-    state, command, tension, free, clipped = found
-    weight = float(plant.ship.gravity.mass) * STANDARD_GRAVITY
-    throttle = np.asarray(command.throttle)
-    allowed = np.asarray(plant.ship.thrusters.saturate(command.throttle))
-    saturated = tuple(name for name, over in zip(thrusters, throttle != allowed, strict=True) if over)
-    left = np.abs(np.asarray(free)).max()
-    if not np.isfinite(left) or left > RESIDUAL_LIMIT * max(weight, 1.0):
-        outcome = TrimOutcome.no_equilibrium
-    else:
-        outcome = TrimOutcome.saturated if saturated else TrimOutcome.converged
-    return TrimPoint(state, command, tension, clipped, saturated, outcome)
+    found = described(problem, jnp.asarray(values))
+    said = judge(scenario, found, float(residual_limit(scenario.system)), question.height_sought)
+    return values, TrimPoint(
+        found.state,
+        found.command,
+        found.tension,
+        found.clipped,
+        said.saturated,
+        said.outcome,
+        said.message,
+        said.warnings,
+        said.limits_passed,
+        said.clearance_hull,
+        said.clearance_cable,
+    )

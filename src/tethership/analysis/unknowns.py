@@ -12,6 +12,9 @@ QUANTITIES = ("velocity_north", "velocity_east", "velocity_down", *STATE_NAMES[3
 """Names of the motion's twelve quantities: ground velocity of P in *ground* axes, then as the states. In ground axes a
 level flight stays level whatever the attitude that is looked for."""
 
+DOWN = QUANTITIES.index("down")
+"""Place of the height."""
+
 SCALES = (1.0, 1.0, 1.0, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 1.0, 1.0, 1.0)
 """Unit in which each is looked for [m/s, rad/s, rad, m]."""
 

@@ -21,6 +21,7 @@ from tethership.cli.common import (
     writable_folder,
 )
 from tethership.cli.completion import complete_layers, complete_solver
+from tethership.cli.points import trimmed_start, warn
 from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario
@@ -73,12 +74,11 @@ def dock(
         flown_scenario = chosen_scenario(scenario, wind, formulation, changes)
         names = None if layers is None else _split(layers)
         flown_scenario.law(names)  # a wrong name is found before anything is computed
-        point = _trimmed(flown_scenario, json)
+        point = trimmed_start(flown_scenario, json)
         trim_outcome = point.outcome.name
         flight = _flown(flown_scenario, point, names, False if no_sas else None, solver)
         if point.saturated:
-            message = f"tethership: warning: {point.outcome.value} ({', '.join(point.saturated)})"
-            typer.echo(message, err=True)
+            typer.echo(f"tethership: warning: the start is no equilibrium. {point.message}", err=True)
     flight.save(out / "flight.nc")
     result = summary(flown_scenario, flight) | {"trim_outcome": trim_outcome}
     rows = _rows(result, flight)
@@ -87,9 +87,7 @@ def dock(
         print_json(result)
     else:
         _print(result, flight, rows)
-    for warning in (result["cable_warning"], result["wind_warning"]):
-        if warning and not json:  # in the JSON it has its key
-            typer.echo(f"tethership: warning: {warning}", err=True)
+        warn(flight.warnings)
     if not flight.outcome.is_answer:
         raise typer.Exit(NO_ANSWER)
 
@@ -98,20 +96,6 @@ def _split(layers: str) -> tuple[str, ...]:
     """Return the layers of a comma-separated list; `none` or nothing for none."""
     names = tuple(name.strip() for name in layers.split(",") if name.strip())
     return () if names == ("none",) else names
-
-
-def _trimmed(scenario: Scenario, as_json: bool) -> "TrimPoint":
-    """Return the trim, or say that there is none and exit."""
-    from tethership.analysis import TrimOutcome, trim
-
-    with stage("trim"):
-        point = trim(scenario)
-    if point.outcome is TrimOutcome.no_equilibrium:
-        if as_json:
-            print_json({"outcome": point.outcome.name, "message": point.outcome.value, "residual": point.residual})
-        typer.echo(f"tethership: {point.outcome.value}", err=True)
-        raise typer.Exit(NO_ANSWER)
-    return point
 
 
 class _Stages:
@@ -184,6 +168,7 @@ def summary(scenario: Scenario, flight: "Flight") -> dict[str, Any]:
     return {
         "outcome": flight.outcome.name,
         "message": flight.outcome.value,
+        "verdict": flight.verdict,
         "docking_time": flight.docking_time,
         "flight_time": flown,
         **flight.metrics,
@@ -193,6 +178,10 @@ def summary(scenario: Scenario, flight: "Flight") -> dict[str, Any]:
         "formulation": scenario.formulation,
         "limits": flight.attributes["limits"],
         "steps": flight.attributes["steps"],
+        "limits_passed": flight.limits_passed,
+        "clearance_hull": flight.metrics["clearance_min"],
+        "clearance_cable": flight.metrics["cable_clearance_min"],
+        "warnings": [*([flight.verdict] if flight.reservations else []), *flight.warnings],
         "cable_warning": quasi_static_warning(flight),
         "wind_warning": record_warning(scenario.config.wind, flown),
     }
@@ -212,7 +201,7 @@ def _rows(result: dict[str, Any], flight: "Flight") -> list[Row]:
         Row("control energy E", result["E"], "", ".3f"),
         Row("pitch, root mean square", result["theta_rms"], "deg", ".2f"),
         Row("least hull clearance", result["clearance_min"], "m", ".2f"),
-        Row("time with a throttle saturated", result["saturated_seconds"], "s", ".2f"),
+        Row("time saturated", result["saturated_seconds"], "s", ".2f"),
         Row("jumps of the misalignment", result["misalignment_jumps"]),
     ]
 
@@ -222,6 +211,6 @@ def _print(result: dict[str, Any], flight: "Flight", rows: list[Row]) -> None:
     layers = " + ".join(result["layers"]) or "constant rewind"
     sas = "SAS, " if result["sas"] else ""
     print_table(rows, f"wind {result['wind']:g} m/s, {sas}{layers}, formulation {result['formulation']}")
-    typer.echo(flight.outcome.value)
+    typer.echo(f"{flight.verdict[0].upper()}{flight.verdict[1:]}. {flight.outcome.value}")
     for path in result["files"]:
         typer.echo(f"wrote {path}")

@@ -19,6 +19,7 @@ from tethership.cli.common import (
     stage,
     writable_folder,
 )
+from tethership.cli.points import balanced, point_keys, warn
 from tethership.cli.tables import CsvOption, writable_csv, write_csv
 from tethership.errors import ConfigError, suggestion
 
@@ -53,20 +54,14 @@ def modes(
     With --out the result is also written there as modes.json, the linear model as model.nc, and every mode drawn as
     motion of the ship in modes.png.
     """
-    from tethership.analysis import TrimOutcome, linearize, trim
+    from tethership.analysis import TrimOutcome, linearize
 
     if part not in PARTS:
         raise ConfigError(f"--part {part!r} is no part{suggestion(part, PARTS)} Allowed: {', '.join(PARTS)}")
     writable_csv(csv)
     folder = None if out is None else writable_folder(out)
     loaded = chosen_scenario(scenario, wind, formulation, changes)
-    with stage("trim"):
-        point = trim(loaded)
-    if point.outcome is TrimOutcome.no_equilibrium:
-        if json:
-            print_json({"outcome": point.outcome.name, "message": point.outcome.value, "residual": point.residual})
-        typer.echo(f"tethership: {point.outcome.value}", err=True)
-        raise typer.Exit(NO_ANSWER)
+    point = balanced(loaded, json)
     with stage("linearise"):
         model = _part(linearize(loaded, point), part)
         found = model.modes()
@@ -76,8 +71,7 @@ def modes(
 
         with stage("sensitivities"):
             ranked = sensitivities(loaded, sensitivity, point)
-    head = {"outcome": point.outcome.name, "message": point.outcome.value, "saturated": list(point.saturated)}
-    head |= {"wind": loaded.config.wind.speed, "formulation": loaded.formulation}
+    head = point_keys(point) | {"wind": loaded.config.wind.speed, "formulation": loaded.formulation}
     result = head | summary(model, found) | ({} if ranked is None else {"sensitivity": _ranked(ranked)})
     if folder is not None:
         (folder / "modes.json").write_text(json_text(result), encoding="utf-8")
@@ -91,8 +85,9 @@ def modes(
         print_json(result)
     else:
         _print(found, ranked, f"{loaded.config.title}: wind {loaded.config.wind.speed:g} m/s, {loaded.formulation}")
-    if point.outcome is TrimOutcome.saturated:
-        typer.echo(f"tethership: warning: {point.outcome.value} ({', '.join(point.saturated)})", err=True)
+        warn(point.warnings)
+    if point.outcome is not TrimOutcome.converged:
+        typer.echo(f"tethership: {point.message}", err=True)
         raise typer.Exit(NO_ANSWER)
 
 

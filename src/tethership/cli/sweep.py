@@ -25,6 +25,7 @@ from tethership.cli.common import (
     writable_folder,
 )
 from tethership.cli.completion import complete_parameter
+from tethership.cli.points import warn
 from tethership.cli.tables import CsvOption, writable_csv, write_csv
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario
@@ -79,6 +80,7 @@ def sweep(
         print_json(result)
     else:
         _print(result, found)
+        warn(line for one in found for line in summary(one)["warnings"])
     if not any(one.trimmed.any() for one in found):
         typer.echo(f"tethership: no point could be trimmed. {found[0].outcomes[0].value}", err=True)
         raise typer.Exit(NO_ANSWER)
@@ -136,6 +138,8 @@ def _figures(
 
 def summary(found: "Sweep") -> dict[str, Any]:
     """Return the keys that scripts may rely on, SI; angles among the parameters in degrees."""
+    from tethership.analysis.sweep_warnings import sweep_warnings
+
     first = next(iter(found.values))
     factors = {name: 180.0 / math.pi if unit == "rad" else 1.0 for name, unit in found.units.items()}
     events = [
@@ -164,6 +168,10 @@ def summary(found: "Sweep") -> dict[str, Any]:
         "throttle": found.throttle,
         "tension": found.tension,
         "residual": np.abs(found.residual).max(axis=1),
+        "limits_passed": [found.limits_passed(point) for point in range(len(found.outcomes))],
+        "clearance_hull": found.clearance_hull,
+        "clearance_cable": found.clearance_cable,
+        "warnings": sweep_warnings(found),
     }
 
 
@@ -252,20 +260,31 @@ def _number(scenario: Scenario, name: str, text: str) -> float:
     return value
 
 
+def _lacking(found: "Sweep", point: int) -> str:
+    """Return by how much a point fails to be a trim."""
+    match found.outcomes[point].name:
+        case "no_equilibrium":
+            return f"{np.abs(found.residual[point]).max():.3g} N or N m left over"
+        case "hull_below_ground":
+            return f"hull {-found.clearance_hull[point]:.1f} m below the ground"
+        case "cable_below_ground":
+            return f"cable {-found.clearance_cable[point]:.1f} m below the ground: longer than the lift can hold up"
+        case _:
+            most = np.abs(found.throttle[point]).max(initial=0.0)
+            turned = np.degrees(np.abs(found.deflection[point]).max(initial=0.0))
+            fins = f", largest |deflection| {turned:.1f}°" if turned > 0 else ""
+            return f"largest |throttle| {most:.2f} of nominal{fins}"
+
+
 def _print(result: dict[str, Any], found: list["Sweep"]) -> None:
     """Print what happened along the sweep and the files."""
     for one in found:
         first, last = ({name: float(v[i]) for name, v in one.values.items()} for i in (0, -1))
         words = ", ".join(f"{name} {first[name]:.4g} to {last[name]:.4g} {one.units[name]}" for name in one.values)
         typer.echo(f"{words}: {int(one.trimmed.sum())} of {len(one.outcomes)} points in trim")
-        rows = zip(one.outcomes, next(iter(one.values.values())), one.throttle, one.residual, strict=True)
-        for outcome, value, throttle, residual in rows:
-            if outcome.name != "converged":
-                most = np.abs(throttle).max(initial=0.0)
-                lacks = f"largest |throttle| {most:.2f} of nominal"
-                if outcome.name == "no_equilibrium":
-                    lacks = f"{np.abs(residual).max():.3g} N or N m left over"
-                typer.echo(f"  {value:<10.4g} {outcome.name}: {lacks}")
+        for point, value in enumerate(next(iter(one.values.values()))):
+            if not one.trimmed[point]:
+                typer.echo(f"  {value:<10.4g} {one.outcomes[point].name}: {_lacking(one, point)}")
         for event in one.events:
             place = ", ".join(f"{name} = {value:.4g}" for name, value in event.at.items())
             verb = {"unstable": "becomes unstable", "stable": "becomes stable"}.get(event.kind, event.kind)

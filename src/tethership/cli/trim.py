@@ -19,6 +19,7 @@ from tethership.cli.common import (
     stage,
     writable_folder,
 )
+from tethership.cli.points import clearance_rows, point_keys, warn
 from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
 from tethership.scenario import Scenario
 
@@ -64,14 +65,11 @@ def trim(
         name: float(np.degrees(value)) if name in ANGLES else float(value)
         for name, value in zip(STATE_NAMES, values, strict=True)
     }
-    result = {
-        "outcome": point.outcome.name,
-        "message": point.outcome.value,
+    result = point_keys(point) | {
         "throttle": point.command.throttle,
         "deflection": np.degrees(point.command.deflection),
         "tension": point.tension,
         "residual": point.residual,
-        "saturated": list(point.saturated),
         "state": state,
         "wind": loaded.config.wind.speed,
         "formulation": loaded.formulation,
@@ -83,19 +81,25 @@ def trim(
     if json:
         print_json(result)
     else:
-        print_table(rows, f"{point.outcome.name}: {point.outcome.value}")
+        print_table(rows, f"{point.outcome.name}: {point.message}")
+        warn(point.warnings)
     if point.outcome is not TrimOutcome.converged:
         raise typer.Exit(NO_ANSWER)
 
 
 def _rows(loaded: Scenario, point: "TrimPoint", state: dict[str, float]) -> list[Row]:
-    """Return throttles, tensions and states as rows of a table."""
+    """Return throttles, deflections (of a ship that moves its fins), tensions and states as rows of a table."""
     throttles = zip(loaded.config.vehicle.thrusters, point.command.throttle, strict=True)
+    angles = np.asarray(point.command.deflection)
+    deflections = zip(loaded.config.vehicle.fins, angles, strict=True) if angles.any() else ()
     tensions = zip(loaded.config.cables, point.tension, strict=True)
     units = dict.fromkeys(ANGLES, "deg") | dict.fromkeys("uvw", "m/s") | dict.fromkeys("pqr", "rad/s")
     return [
         *[Row(thruster.name, float(throttle), "", ".4f") for thruster, throttle in throttles],
+        *[Row(fin.name, float(np.degrees(angle)), "deg", ".3f") for fin, angle in deflections],
         *[Row(f"tension {cable.name}", float(tension), "N", ".2f") for cable, tension in tensions],
+        *[Row(f"limit passed: {name}", ratio, "times", ".3f") for name, ratio in point.limits_passed.items()],
+        *clearance_rows(point.clearance_hull, point.clearance_cable),
         *[Row(name, value, units.get(name, "m"), ".4f") for name, value in state.items()],
         Row("largest residual", float(np.abs(np.asarray(point.residual)).max()), "N, N m", ".2e"),
     ]

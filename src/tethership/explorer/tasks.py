@@ -69,7 +69,8 @@ def _trim(scenario: Scenario, options: Mapping[str, Any], report: Report) -> dic
     return {
         "title": config.title,
         "outcome": point.outcome.name,
-        "message": point.outcome.value,
+        "message": point.message,
+        "warnings": list(point.warnings),
         "answer": point.outcome is TrimOutcome.converged,
         "saturated": list(point.saturated),
         "state": state,
@@ -79,13 +80,13 @@ def _trim(scenario: Scenario, options: Mapping[str, Any], report: Report) -> dic
         "breaking": {c.name: c.breaking_force for c in config.cables},
         "residual": np.asarray(point.residual).tolist(),
         "wind": config.wind.speed,
-        "figure": None if point.outcome is TrimOutcome.no_equilibrium else trim_figure(scenario, point),
+        "figure": trim_figure(scenario, point) if point.outcome.is_balanced else None,
     }
 
 
 def _locus(scenario: Scenario, options: Mapping[str, Any], report: Report) -> dict[str, Any]:
     """Return the root locus along a parameter and the modes of the scenario itself."""
-    from tethership.analysis import TrimOutcome, linearize, sweep, trim
+    from tethership.analysis import linearize, sweep, trim
 
     name, points = options["name"], int(options["points"])
     low, high = (converted(value, unit, options["unit"]) for value, unit in (options["low"], options["high"]))
@@ -93,7 +94,7 @@ def _locus(scenario: Scenario, options: Mapping[str, Any], report: Report) -> di
     found = sweep(scenario, {name: np.linspace(low, high, points)})
     report("modes of the chosen scenario", None)
     point = trim(scenario)
-    own = None if point.outcome is TrimOutcome.no_equilibrium else linearize(scenario, point).modes()
+    own = linearize(scenario, point).modes() if point.outcome.is_balanced else None
     if not found.trimmed.any() and own is None:
         return {"title": scenario.config.title, "answer": False, "message": found.outcomes[0].value, "figure": None}
     report("drawing", None)
@@ -138,14 +139,13 @@ def _mode(mode: Any) -> dict[str, Any]:
 
 def _flight(scenario: Scenario, options: Mapping[str, Any], report: Report) -> dict[str, Any]:
     """Return a flight's metrics and histories."""
-    from tethership.analysis import TrimOutcome, trim
+    from tethership.analysis import trim
     from tethership.simulation import dock
-    from tethership.simulation.quasi_static import quasi_static_warning
 
     report("looking for the equilibrium", None)
     point = trim(scenario)
-    if point.outcome is TrimOutcome.no_equilibrium:
-        return {"title": scenario.config.title, "answer": False, "message": point.outcome.value, "figure": None}
+    if not point.outcome.is_start:
+        return {"title": scenario.config.title, "answer": False, "message": point.message, "figure": None}
     limit = scenario.config.stop.time_limit
     report("preparing the flight", 0.0)
     flight = dock(
@@ -159,14 +159,15 @@ def _flight(scenario: Scenario, options: Mapping[str, Any], report: Report) -> d
     from tethership.explorer.plain import plain_figure
     from tethership.view.interactive_histories import interactive_histories
 
-    warnings = [] if not point.saturated else [f"{TrimOutcome.saturated.value} ({', '.join(point.saturated)})"]
-    warning = quasi_static_warning(flight)
+    start = [f"The start is no equilibrium. {point.message}"] if point.saturated else []
     return {
         "title": scenario.config.title,
         "answer": flight.outcome.is_answer,
         "outcome": flight.outcome.name,
         "message": flight.outcome.value,
-        "warnings": [*warnings, *([warning] if warning else [])],
+        "verdict": flight.verdict,
+        "reserved": bool(flight.reservations),
+        "warnings": [*start, *flight.warnings],
         "time": float(flight.data["time"][-1]),
         "metrics": {
             key: value.tolist() if hasattr(value, "tolist") else value for key, value in flight.metrics.items()

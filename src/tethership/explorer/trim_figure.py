@@ -15,6 +15,7 @@ from plotly.subplots import make_subplots
 from tethership.analysis import TrimPoint
 from tethership.explorer.plain import plain_figure
 from tethership.scenario import Scenario
+from tethership.scenario.build_air import ground_level
 from tethership.spatial import rotation_matrix
 from tethership.system import State, TetheredAirship
 from tethership.view import style
@@ -84,7 +85,7 @@ def _seen(figure: go.Figure, column: int, view: View, scenario: Scenario, point:
         _line(figure, column, flat, style.cable_colour(index), 2.0)
         _mark(figure, column, flat[0])
     if view.shows_altitude:
-        figure.add_hline(y=-(scenario.config.ground.anchor_height or 0.0), line_color=style.BETWEEN, **_at(column))
+        figure.add_hline(y=-float(ground_level(scenario.config)), line_color=style.BETWEEN, **_at(column))
     figure.update_xaxes(title_text=view.labels[0], zeroline=False, row=1, col=column)
     scale = {"scaleanchor": f"x{'' if column == 1 else column}", "scaleratio": 1}
     figure.update_yaxes(title_text=view.labels[1], zeroline=False, **scale, row=1, col=column)

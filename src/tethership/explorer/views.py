@@ -39,11 +39,15 @@ def verdict(good: str, words: str, notes: Iterable[str] = ()) -> html.Div:
     return html.Div([line, *(html.P(note, className="note") for note in notes)])
 
 
+def _sentence(words: str) -> str:
+    """Return a line as a sentence."""
+    return f"{words[0].upper()}{words[1:].removesuffix('.')}."
+
+
 def trim_head(result: dict[str, Any]) -> Any:
     """Return how the trim ended."""
-    lacking = ", ".join(name.replace("_", " ") for name in result["saturated"])
-    kind = {"converged": "good", "saturated": "fair"}.get(result["outcome"], "bad")
-    return verdict(kind, result["message"], [f"Thrusters beyond their limits: {lacking}"] if lacking else [])
+    kind = {"converged": "fair" if result["warnings"] else "good", "saturated": "fair"}.get(result["outcome"], "bad")
+    return verdict(kind, result["message"], map(_sentence, result["warnings"]))
 
 
 def trim_rest(result: dict[str, Any]) -> Any:
@@ -121,8 +125,9 @@ def flight_head(result: dict[str, Any]) -> Any:
     """Return how the flight ended and its metrics."""
     if result["figure"] is None:
         return verdict("bad", result["message"])
-    kind = {"docked": "good", "time_limit": "fair", "ground_contact": "fair"}.get(result["outcome"], "bad")
-    line = verdict(kind, f"{result['outcome'].replace('_', ' ')} after {result['time']:.2f} s. {result['message']}")
+    sound = "fair" if result["reserved"] else "good"
+    kind = {"docked": sound, "time_limit": "fair", "ground_contact": "fair"}.get(result["outcome"], "bad")
+    line = verdict(kind, f"{_sentence(result['verdict'])} {result['message']}")
     found = result["metrics"]
     rows = [
         ("largest tension", f"{found['tension_max']:.1f}", "N"),

@@ -9,11 +9,16 @@ Jones & DeLaurier, "Aerodynamic estimation techniques for aerostats and airships
 Mueller, Paluszek & Zhao, AIAA 2004-6243. The paper's own fins are not published.
 """
 
+import math
+
 import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from tethership.spatial import Wrench
+
+USUAL_DEFLECTION = math.radians(20.0)
+"""Largest deflection of a fin whose file gives none [rad]: ±20°, assumed as the usual stop of an airship's surfaces."""
 
 
 class Fins(eqx.Module):
@@ -33,6 +38,8 @@ class Fins(eqx.Module):
         S C_Dc, area times cross-flow drag coefficient [m²].
     friction_area : Float[Array, "fins"]
         S C_D0, area times axial drag coefficient [m²].
+    largest_deflection : Float[Array, "fins"] or float
+        Largest |δ| of each [rad].
     """
 
     aerodynamic_centre: Float[Array, "fins 3"]
@@ -41,11 +48,16 @@ class Fins(eqx.Module):
     lift_area: Float[Array, "fins"]
     cross_flow_area: Float[Array, "fins"]
     friction_area: Float[Array, "fins"]
+    largest_deflection: Float[Array, "fins"] | float = USUAL_DEFLECTION
 
     @property
     def count(self) -> int:
         """Number of fins."""
         return self.lift_area.shape[0]
+
+    def saturate(self, deflection: Float[Array, "fins"]) -> Float[Array, "fins"]:
+        """Return the deflection δ [rad] clipped to what each fin can do."""
+        return jnp.clip(deflection, -self.largest_deflection, self.largest_deflection)
 
     def wrench(
         self,
@@ -65,7 +77,7 @@ class Fins(eqx.Module):
         rates : Float[Array, "3"]
             ω, body axes [rad/s].
         deflection : Float[Array, "fins"]
-            δ [rad], added to the incidence v_n / v_x.
+            δ [rad], added to the incidence v_n / v_x; within the limits of `saturate`.
 
         Notes
         -----

@@ -113,7 +113,8 @@ def docking_metrics(flight: dict[str, Array], limits: list[float]) -> dict[str, 
     -----
     Tension is that at the tether point of the cable that pulls hardest, refined before its peak and its time over a
     limit are read off; `tension_largest` is the peak anywhere along any cable, which is what breaks it. Jumps of the
-    misalignment are those of the first cable. θ_rms is in degrees, all else in SI. Without a cable tensions are zero
+    misalignment are those of the first cable. Saturated is a flight while a thruster or a fin is asked for more than it
+    has. θ_rms is in degrees, all else in SI. Without a cable tensions are zero
     and `cable_clearance_min` is None.
     """
     time = flight["time"]
@@ -125,6 +126,8 @@ def docking_metrics(flight: dict[str, Array], limits: list[float]) -> dict[str, 
     rates = flight["rewind_rate"]
     chi = flight["misalignment"]
     sag = flight["cable_clearance"]
+    asked = [flight[name] for name in ("saturated", "deflection_saturated") if name in flight]
+    saturated = np.concatenate(asked, axis=1).max(axis=1, initial=0.0)
     return {
         "tension_max": float(fine_tension.max()),
         "tension_mean": mean(time, tension),
@@ -136,6 +139,6 @@ def docking_metrics(flight: dict[str, Array], limits: list[float]) -> dict[str, 
         "theta_rms": float(np.degrees(np.sqrt(mean(time, pitch**2)))),
         "clearance_min": float(flight["clearance"].min()),
         "cable_clearance_min": float(sag.min()) if cables else None,
-        "saturated_seconds": float(mean(time, flight["saturated"].max(axis=1, initial=0.0)) * (time[-1] - time[0])),
+        "saturated_seconds": float(mean(time, saturated) * (time[-1] - time[0])),
         "misalignment_jumps": jumps(chi[:, 0]) if cables else 0,
     }

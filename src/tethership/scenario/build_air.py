@@ -97,10 +97,18 @@ def _atmosphere(config: ScenarioConfig) -> AbstractAtmosphere:
     return StandardAtmosphere(jnp.asarray(air.origin_altitude), jnp.asarray(air.temperature_offset))
 
 
+def ground_level(config: ScenarioConfig) -> Float[Array, ""]:
+    """Return the down coordinate of the ground [m]: as the scenario gives it, else that of the lowest anchor."""
+    if config.ground.anchor_height is not None:
+        return jnp.asarray(config.ground.anchor_height)
+    if not config.cables:
+        return jnp.asarray(0.0)
+    return jnp.max(jnp.stack([jnp.asarray(cable.anchor[2]) for cable in config.cables]))
+
+
 def build_environment(config: ScenarioConfig) -> Environment:
     """Return air, wind, gusts, fluctuations and ground."""
-    height = config.ground.anchor_height
-    ground = jnp.asarray(0.0 if height is None else height)
+    ground = ground_level(config)
     effect = config.ground.effect_coefficient
     wind = build_wind(config.wind, ground)
     return Environment(

@@ -145,6 +145,7 @@ def _fins(config: VehicleConfig, shift: Float[Array, "3"]) -> Fins:
         lift_area=area * column("lift_slope") * column("efficiency"),
         cross_flow_area=area * column("cross_flow_drag_coefficient"),
         friction_area=area * column("axial_drag_coefficient"),
+        largest_deflection=column("largest_deflection"),
     )
 
 

@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from tethership.results.limits import LIMITS
 from tethership.scenario.control_schema import ControlConfig
 from tethership.scenario.quantity import Angle, Metres, Quantity, Seconds, Speed, Table, Vector
 from tethership.scenario.vehicle_schema import VehicleConfig
@@ -32,10 +33,10 @@ AirConfig = Annotated[StandardAir | ConstantAir, Field(discriminator="model")]
 
 
 class GroundConfig(Table):
-    """The ground under the first anchor.
+    """The ground: `anchor_height` below the origin (the first anchor); without it at the lowest anchor.
 
-    With `anchor_height` given (a mast), a hull that touches the ground ends the flight; without it the anchor is
-    at ground level and the least clearance is only recorded.
+    With `anchor_height` given (a mast), a hull that touches the ground ends the flight; without it the least clearance
+    is only recorded and told. A trim whose hull lies below the ground is no equilibrium either way.
     """
 
     anchor_height: Annotated[float, Quantity("m", low=0.0)] | None = None
@@ -168,9 +169,18 @@ class ScenarioConfig(Table):
             raise ValueError(f"layers {list(self.control.layers)} need a cable, and there is none")
         return self
 
-    def watched_tensions(self) -> list[float]:
-        """Return the four tensions that are watched [N]: control threshold, tear, envelope tensile, cable break."""
+    def watched_limits(self) -> dict[str, float]:
+        """Return the four tensions that are watched [N] by the names of `results.limits`."""
         limits = self.limits
         weakest = min((cable.breaking_force for cable in self.cables), default=limits.cable_break)
         assert weakest is not None  # validated above
-        return [limits.control_threshold, limits.envelope_tear, limits.envelope_tensile, weakest]
+        watched = (limits.control_threshold, limits.envelope_tear, limits.envelope_tensile, weakest)
+        return dict(zip(LIMITS, watched, strict=True))
+
+    def watched_tensions(self) -> list[float]:
+        """Return the four tensions that are watched [N]: control threshold, tear, envelope tensile, cable break."""
+        return list(self.watched_limits().values())
+
+    def has_ground(self) -> bool:
+        """Return whether it is known where the ground is: at the height given, or below the lowest anchor."""
+        return self.ground.anchor_height is not None or bool(self.cables)

@@ -6,6 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 from pydantic import Field, model_validator
 
+from tethership.physics.fins import USUAL_DEFLECTION
 from tethership.physics.hull import gertler_from_shape
 from tethership.scenario.quantity import Matrix, Quantity, Table, Vector
 
@@ -127,6 +128,7 @@ class FinConfig(Table):
     aerodynamic_station: Annotated[float, Quantity("m", sourced=True)]
     cross_flow_station: Annotated[float, Quantity("m", sourced=True)]
     distance_from_axis: Annotated[float, Quantity("m", low=0.0, sourced=True)]
+    largest_deflection: Annotated[float, Quantity("rad", low=0.0, high=1.5708, sourced=True)] = USUAL_DEFLECTION
 
 
 class ThrusterConfig(Table):

@@ -6,6 +6,7 @@ Depends on: system, control. The integrator's vector is (12 states, cable length
 from typing import Any, NamedTuple
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Float
@@ -28,8 +29,8 @@ class Instant(NamedTuple):
     cables : tuple of CableState
     command : Command
         After clipping.
-    saturated : Float[Array, "thrusters"]
-        Whether a thruster is asked for more than it has.
+    saturated : Command
+        Whether a thruster, or a fin, is asked for more than it has.
     rewind_rate : Float[Array, "cables"]
         Ψ [m/s].
     loads : dict[str, Wrench]
@@ -42,7 +43,7 @@ class Instant(NamedTuple):
     lengths: Float[Array, "cables"]
     cables: tuple[CableState, ...]
     command: Command
-    saturated: Float[Array, "thrusters"]
+    saturated: Command
     rewind_rate: Float[Array, "cables"]
     loads: dict[str, Wrench]
     memory_rate: Any
@@ -107,11 +108,11 @@ class ClosedLoop(eqx.Module):
         cables = self.plant.cable_states(time, state, lengths)
         measurement = self.measure(state, lengths, cables)
         correction, memory_rate = self.law(time, measurement, self._memory(flat, measurement))
-        asked = self.trimmed.throttle + correction.throttle
-        throttle = self.plant.ship.thrusters.saturate(asked)
-        command = Command(throttle, self.trimmed.deflection + correction.deflection)
+        asked = Command(self.trimmed.throttle + correction.throttle, self.trimmed.deflection + correction.deflection)
+        command = self.plant.ship.allowed(asked)
+        saturated = jax.tree.map(jnp.not_equal, asked, command)
         loads = self.plant.wrenches(time, state, command, cables)
-        return Instant(state, lengths, cables, command, asked != throttle, self._rewind(correction), loads, memory_rate)
+        return Instant(state, lengths, cables, command, saturated, self._rewind(correction), loads, memory_rate)
 
     def vector_field(self, time: Float[Array, ""], vector: Float[Array, "n"]) -> Float[Array, "n"]:
         """Return the time derivative of the integrator's vector at time t [s]; dL_t/dt = −Ψ."""

@@ -24,6 +24,7 @@ from tethership.simulation.flight import Flight, Progress, fly
 from tethership.simulation.outcome import Outcome
 from tethership.spatial import rotation_matrix
 from tethership.system import Command, State, TetheredAirship
+from tethership.system.balance import DRIFT_LIMIT, drift, left_over, residual, residual_limit
 
 
 class Start(Protocol):
@@ -82,6 +83,29 @@ def _begin(loop: ClosedLoop, stop: StopConditions, state: State) -> tuple[Array,
     return vector, stop.margins(loop, jnp.zeros(()), vector)
 
 
+@eqx.filter_jit
+def _balance(plant: TetheredAirship, state: State, command: Command) -> tuple[Array, Array]:
+    """Return what a point leaves over in the mean air of a plant [N, N m], and the rates of what must stand still."""
+    return residual(plant.in_mean_air(), state, command), drift(plant, state)
+
+
+def _check_point(scenario: Scenario, point: Start) -> None:
+    """Raise ConfigError where a point is no equilibrium of the scenario: trimmed for another one, say.
+
+    Notes
+    -----
+    Ten times what a trim may leave: a stored or continued point may differ from one found anew by its rounding.
+    """
+    left, moving = (np.asarray(part) for part in _balance(scenario.system, point.state, point.command))
+    limit = 10.0 * float(residual_limit(scenario.system))
+    worst = max(np.abs(left).max() / limit, np.abs(moving).max() / (10.0 * DRIFT_LIMIT))
+    if not worst <= 1.0:
+        raise ConfigError(
+            f"dock: the point is no equilibrium of this scenario: {left_over(left, moving, limit)} left over; was it "
+            "trimmed for another wind or ship? Give trim(scenario) of the scenario that is flown"
+        )
+
+
 def _check_start(margins: Float[Array, "4"]) -> None:
     """Raise ConfigError where the flight would be over before it begins."""
     docked, broken, contact, pitch = np.asarray(margins)
@@ -93,7 +117,10 @@ def _check_start(margins: Float[Array, "4"]) -> None:
     if docked <= 0:
         raise ConfigError("the start is docked already: cables.length must be above stop.cable_length")
     if contact <= 0:
-        raise ConfigError(f"the start has the hull {-contact:.2f} m below ground; raise ground.anchor_height")
+        raise ConfigError(
+            f"the start has the hull {-contact:.2f} m below ground: raise ground.anchor_height (a higher mast), or "
+            "start higher (trim.elevation, trim.elongation, a smaller start.attitude_offset)"
+        )
     if pitch <= 0:
         raise ConfigError("the start is beyond stop.largest_pitch; lower start.attitude_offset")
 
@@ -132,7 +159,7 @@ def dock(
     Raises
     ------
     ConfigError
-        A layer is not known, or the start is over before it begins.
+        A layer is not known, the point is no equilibrium of this scenario, or the start is over before it begins.
     """
     config = read_solver(solver) if isinstance(solver, str) else solver
     known = {"attitude", "rewind", "heading", "navigation"} & set(own_laws or {})
@@ -143,6 +170,7 @@ def dock(
     law = scenario.law(names, active).joined(own_laws or {})
     loop = ClosedLoop(scenario.system, law, point.command)
     stop = stop_conditions(scenario)
+    _check_point(scenario, point)
     vector, margins = _begin(loop, stop, start_state(scenario, point.state))
     _check_start(margins)
     flown = fly(loop, vector, stop, config, scenario.config.stop.time_limit, progress)

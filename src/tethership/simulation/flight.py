@@ -13,7 +13,10 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from tethership.results import docking_metrics, store
+from tethership.scenario import ScenarioConfig
+from tethership.scenario.load import validated
 from tethership.scenario.solver import SolverConfig
+from tethership.simulation import trust
 from tethership.simulation.closed_loop import ClosedLoop
 from tethership.simulation.events import MARGINS, StopConditions
 from tethership.simulation.integrate import SAMPLES, Segment, Stepping, fly_segment
@@ -44,12 +47,45 @@ class Flight:
         """Input and versions, decoded."""
         return store.attributes_of(self.data)
 
-    @functools.cached_property
+    @property
     def metrics(self) -> dict[str, Any]:
         """Metrics of Tables 3–6, SI, θ_rms in degrees."""
+        return self._metrics
+
+    @functools.cached_property
+    def _metrics(self) -> dict[str, Any]:
         arrays = {str(name): np.asarray(value) for name, value in self.data.data_vars.items()}
         arrays["time"] = self.data["time"].to_numpy()
         return docking_metrics(arrays, self.attributes["limits"])
+
+    @property
+    def config(self) -> ScenarioConfig:
+        """The scenario that was flown, validated; raises ConfigError where this version cannot read it."""
+        return self._config
+
+    @functools.cached_property
+    def _config(self) -> ScenarioConfig:
+        return validated(ScenarioConfig, self.attributes["scenario"], self.attributes["scenario_name"])
+
+    @functools.cached_property
+    def limits_passed(self) -> dict[str, float]:
+        """For how long [s] each watched limit was passed, only those that were; names as `results.limits`."""
+        return trust.seconds_passed(self)
+
+    @functools.cached_property
+    def reservations(self) -> tuple[str, ...]:
+        """What the bare outcome would hide, a clause each: limits passed, hull below the ground, saturation."""
+        return tuple(trust.reservations(self))
+
+    @functools.cached_property
+    def verdict(self) -> str:
+        """How it ended and what must be said with it: "docked after 61.7 s, but …"."""
+        return trust.verdict(self)
+
+    @functools.cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """What must be known before its numbers are used, besides the verdict: the ranges of its models."""
+        return tuple(trust.warnings(self))
 
     @property
     def docking_time(self) -> float | None:

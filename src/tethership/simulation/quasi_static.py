@@ -1,4 +1,4 @@
-"""Where in a flight the quasi-static cable may be trusted. Depends on: simulation.flight, scenario.
+"""Where in a flight the quasi-static cable may be trusted. Depends on: scenario.
 
 A cable follows its ends quasi-statically while they are slow against its own motion, of which the first transverse mode
 is the slowest: ω₁ = (π/L)√(T/m), a taut string's. The pace of the tension against it is
@@ -17,12 +17,13 @@ axial wave; in 40 snaps of eight flights by 0.6 of it in the middle, 1.0 at nine
 joint), so under it κ tells of the law as much as of the motion.
 """
 
+from typing import Protocol
+
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from tethership.scenario import ScenarioConfig
-from tethership.scenario.load import validated
-from tethership.simulation.flight import Flight
 
 TRUSTED = 0.3
 """Largest pace κ at which the quasi-static tension may be trusted [-]."""
@@ -40,13 +41,25 @@ TOLD = 0.01
 """Share of a flight outside the trusted range from which it is told [-]."""
 
 
-def tension_pace(flight: Flight) -> NDArray[np.float64]:
+class Recorded(Protocol):
+    """What is needed of a flight."""
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Its outputs."""
+        ...
+
+    @property
+    def config(self) -> ScenarioConfig:
+        """Its scenario."""
+        ...
+
+
+def tension_pace(flight: Recorded) -> NDArray[np.float64]:
     """Return κ [-] of each cable at the flight's instants, shape (time, cables)."""
     data = flight.data
     time, tension = data["time"].to_numpy(), data["tension"].to_numpy()
-    stored = flight.attributes
-    config = validated(ScenarioConfig, stored["scenario"], stored["scenario_name"])
-    mass = np.array([cable.linear_density for cable in config.cables])
+    mass = np.array([cable.linear_density for cable in flight.config.cables])
     if len(time) < 2 or not len(mass):
         return np.zeros(tension.shape)
     floor = np.maximum(tension, LEAST_TENSION)
@@ -54,24 +67,23 @@ def tension_pace(flight: Flight) -> NDArray[np.float64]:
     return np.abs(np.gradient(tension, time, axis=0)) / floor / mode
 
 
-def outside(flight: Flight) -> NDArray[np.bool_]:
+def outside(flight: Recorded) -> NDArray[np.bool_]:
     """Return at which of the flight's instants a cable is outside the trusted range, shape (time,)."""
     pace, time = tension_pace(flight), flight.data["time"].to_numpy()
     hurried = np.where(np.any(pace > TRUSTED, axis=1), time, -np.inf)
     return time - np.maximum.accumulate(hurried) <= MEMORY
 
 
-def share_outside(flight: Flight) -> float:
+def share_outside(flight: Recorded) -> float:
     """Return the share of the flight's samples in which a cable is outside the trusted range [-]."""
     return float(np.mean(outside(flight))) if flight.data["tension"].size else 0.0
 
 
-def largest_impulse(flight: Flight) -> tuple[float, float]:
+def largest_impulse(flight: Recorded) -> tuple[float, float]:
     """Return the largest v√(EA m) [N] of a snap, e rising through 1 after it was slack, and its time [s]; 0 if none."""
-    stored, data = flight.attributes, flight.data
-    config = validated(ScenarioConfig, stored["scenario"], stored["scenario_name"])
+    data = flight.data
     time, largest = data["time"].to_numpy(), (0.0, 0.0)
-    for i, cable in enumerate(config.cables):
+    for i, cable in enumerate(flight.config.cables):
         elongation, distance = data["elongation"].to_numpy()[:, i], data["distance"].to_numpy()[:, i]
         closing = np.gradient(distance, time) + data["rewind_rate"].to_numpy()[:, i] * elongation
         slack = False
@@ -84,14 +96,14 @@ def largest_impulse(flight: Flight) -> tuple[float, float]:
     return largest
 
 
-def quasi_static_warning(flight: Flight) -> str | None:
+def quasi_static_warning(flight: Recorded) -> str | None:
     """Return one line where a flight leaves the range in which the quasi-static cable may be trusted, else None."""
     share = share_outside(flight)
     if share < TOLD:
         return None
     impulse, moment = largest_impulse(flight)
     advice = ""
-    if flight.attributes["formulation"] == "published":
+    if flight.config.formulation == "published":
         advice = "; the paper's cable pulls from e = 0.99 on and overstates snaps: see formulation consistent"
     elif impulse > 0.0:
         advice = f"; a dynamic line may peak up to {impulse:.0f} N higher at the snap at {moment:.1f} s"

@@ -31,7 +31,7 @@ class Signals(NamedTuple):
     roll, pitch : Float[Array, ""]
         φ, θ [rad].
     saturated : Float[Array, ""]
-        1 where any thruster is asked for more than it has.
+        1 where any thruster or fin is asked for more than it has.
     rewind_rate : Float[Array, ""]
         Slowest Ψ of the winches [m/s].
     clearance : Float[Array, ""]
@@ -63,7 +63,7 @@ def signals(loop: ClosedLoop, now: Instant) -> Signals:
         throttle=now.command.throttle,
         roll=now.state.attitude[0],
         pitch=now.state.attitude[1],
-        saturated=jnp.any(now.saturated).astype(float),
+        saturated=(jnp.any(now.saturated.throttle) | jnp.any(now.saturated.deflection)).astype(float),
         rewind_rate=jnp.min(now.rewind_rate) if cables else zero,
         clearance=loop.plant.environment.ground - loop.plant.ship.lowest_point(now.state),
         misalignment=misalignment(now.state.attitude, cables[0].span) if cables else zero,

@@ -50,6 +50,10 @@ class Airship(eqx.Module):
     outline: Strips
     nose: Float[Array, "3"]
 
+    def allowed(self, command: Command) -> Command:
+        """Return a command clipped to what thrusters [-] and fins [rad] can do."""
+        return Command(self.thrusters.saturate(command.throttle), self.fins.saturate(command.deflection))
+
     def lowest_point(self, state: State) -> Float[Array, ""]:
         """Return the down coordinate of the lowest point of the hull [m], ground axes."""
         rotation = rotation_matrix(state.attitude)

@@ -88,7 +88,7 @@ def _title(figure: Figure, snapshots: Snapshots, title: str | None) -> None:
     attributes, config = snapshots.flight.attributes, snapshots.config
     parts = [
         *flown_words(config, attributes),
-        f"{attributes['outcome'].replace('_', ' ')} after {snapshots.time[-1]:.1f} s",
+        snapshots.flight.verdict,
     ]
     words = config.title if title is None else title
     figure.text(LEFT, 0.972, words, fontsize=style.FONT + 4, weight="bold", color=style.INK, va="center")

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from tethership.errors import SolveError
 from tethership.scenario import ScenarioConfig
-from tethership.scenario.load import validated
+from tethership.scenario.build_air import ground_level
 from tethership.simulation import Flight
 from tethership.spatial import rotation_matrix
 from tethership.view.ship import ShipShape, ship_shape
@@ -105,8 +105,7 @@ def take_snapshots(flight: Flight) -> Snapshots:
     """
     if flight.data.sizes["time"] == 0:
         raise SolveError("the flight has no sample to draw: it diverged at its start")
-    attributes = flight.attributes
-    config = validated(ScenarioConfig, attributes["scenario"], attributes["scenario_name"])
+    config = flight.config
     shape = ship_shape(config.vehicle)
     time = flight.data["time"].to_numpy()
     interval = snapshot_interval(float(time[-1] - time[0]))
@@ -121,7 +120,7 @@ def take_snapshots(flight: Flight) -> Snapshots:
         rotations[indices],
         flight.data["position"].to_numpy() + rotations @ shape.axis,
         flight.data["cable_curve"].to_numpy(),
-        -(config.ground.anchor_height or 0.0),
+        -float(ground_level(config)),
     )
 
 

@@ -4,18 +4,14 @@ const FARTHEST_FIXED = 5; // flights longer than so many ships are followed by t
 
 const describe = (flights) => {
   const same = flights[0].words.filter((part) => flights.every((flight) => flight.words.includes(part)));
-  const words = flights.length > 1 ? same : [...same, howItEnded(flights[0])];
+  const words = flights.length > 1 ? same : [...same, flights[0].verdict];
   document.getElementById("title").textContent = [...new Set(flights.map((flight) => flight.title))].join(" | ");
   document.getElementById("words").textContent = words.join(" · ");
   return same;
 };
 
-const howItEnded = (flight) => `${flight.outcome} after ${flight.duration.toFixed(1)}\u00a0s`;
-
 const notesOf = (flight) => [
-  ...(flight.outside > 0
-    ? [`quasi-static cable outside its range in ${Math.ceil(100 * flight.outside)} % of the flight`]
-    : []),
+  ...flight.warnings,
   ...(flight.missing.length ? [`not in this file: ${flight.missing.join(", ")}`] : []),
   ...(flight.ground_modelled
     ? []
@@ -30,7 +26,7 @@ const makeStageBoxes = (flights, same) =>
     const caption = box.querySelector("figcaption");
     caption.hidden = flights.length === 1;
     caption.querySelector("b").textContent = `${LETTERS[i]} · ${flight.name}`;
-    const own = [...flight.words.filter((part) => !same.includes(part)), howItEnded(flight)];
+    const own = [...flight.words.filter((part) => !same.includes(part)), flight.verdict];
     caption.querySelector("span").textContent = own.join(" · ");
     const later = flights.slice(i + 1).flatMap(notesOf);
     const scale = i > 0 && limitsDiffer(flights) ? ["cables coloured by A’s limits, not B’s"] : [];

@@ -18,7 +18,7 @@ from scipy.spatial.transform import Rotation
 from tethership.physics.thrusters import Thrusters
 from tethership.physics.wind import AbstractWind
 from tethership.scenario import ScenarioConfig
-from tethership.scenario.build_air import build_wind
+from tethership.scenario.build_air import build_wind, ground_level
 from tethership.scenario.build_ship import build_thrusters
 
 Array = NDArray[np.float64]
@@ -77,7 +77,7 @@ def gusts(wind: Array, centre: Array, config: ScenarioConfig) -> Array:
     config : ScenarioConfig
         Says what the mean wind is.
     """
-    mean = build_wind(config.wind, jnp.asarray(config.ground.anchor_height or 0.0))
+    mean = build_wind(config.wind, ground_level(config))
     return wind - _in_blocks(functools.partial(_mean_wind, mean), centre)
 
 

@@ -9,9 +9,8 @@ import numpy as np
 
 from tethership.errors import SolveError
 from tethership.scenario import ScenarioConfig
-from tethership.scenario.load import validated
+from tethership.scenario.build_air import ground_level
 from tethership.simulation import Flight
-from tethership.simulation.quasi_static import quasi_static_warning, share_outside
 from tethership.view.hull_mesh import ship_mesh
 from tethership.view.replay.tracks import COPIED, packed, packed_tracks, tracks
 from tethership.view.ship import ship_shape
@@ -46,7 +45,7 @@ def scene(flight: Flight, name: str) -> dict[str, Any]:
     if flight.data.sizes.get("time", 0) == 0:
         raise SolveError("the flight has no sample to show: it diverged at its start")
     attributes = flight.attributes
-    config = validated(ScenarioConfig, attributes["scenario"], attributes["scenario_name"])
+    config = flight.config
     found = tracks(flight.data, config)
     expected = [
         track
@@ -58,7 +57,7 @@ def scene(flight: Flight, name: str) -> dict[str, Any]:
         "name": name,
         "title": config.title,
         "words": flown_words(config, attributes),
-        "outcome": flight.outcome.name.replace("_", " "),
+        "verdict": flight.verdict,
         "message": flight.outcome.value,
         "duration": float(found["time"][-1]),
         "ship": _ship(config),
@@ -66,7 +65,7 @@ def scene(flight: Flight, name: str) -> dict[str, Any]:
             {"name": cable.name, "anchor": list(cable.anchor), "tether_point": list(cable.tether_point)}
             for cable in config.cables
         ],
-        "ground": float(config.ground.anchor_height or 0.0),
+        "ground": float(ground_level(config)),
         "ground_modelled": config.ground.anchor_height is not None,
         "wind_from": compass(config.wind.from_direction),
         "gusts": [[gust.start, gust.start + gust.period] for gust in config.gusts],
@@ -74,7 +73,7 @@ def scene(flight: Flight, name: str) -> dict[str, Any]:
             {"name": limit.replace("_", " "), "value": float(value)}
             for (limit, _), value in zip(config.limits, attributes["limits"], strict=True)
         ],
-        "outside": share_outside(flight) if quasi_static_warning(flight) else 0.0,
+        "warnings": list(flight.warnings),
         "missing": [track.replace("_", " ") for track in expected if track not in found],
         "tracks": packed_tracks(found),
     }

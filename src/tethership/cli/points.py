@@ -1,0 +1,68 @@
+"""What every command says of a trim: the same keys, the same sentences, the same exit. Depends on: typer."""
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from tethership.cli.common import NO_ANSWER, print_json, stage
+from tethership.cli.tables import Row
+from tethership.scenario import Scenario
+
+if TYPE_CHECKING:
+    from tethership.analysis import TrimPoint
+
+
+def point_keys(point: "TrimPoint") -> dict[str, Any]:
+    """Return the keys that scripts may rely on wherever a trim is told, SI."""
+    return {
+        "outcome": point.outcome.name,
+        "message": point.message,
+        "saturated": list(point.saturated),
+        "limits_passed": point.limits_passed,
+        "clearance_hull": point.clearance_hull,
+        "clearance_cable": point.clearance_cable,
+        "warnings": list(point.warnings),
+    }
+
+
+def clearance_rows(hull: float | None, cable: float | None) -> list[Row]:
+    """Return the heights of the lowest points of hull and cables above the ground as rows of a table [m]."""
+    parts = (("hull above ground", hull), ("cable above ground", cable))
+    return [Row(name, height, "m", ".2f") for name, height in parts if height is not None]
+
+
+def warn(lines: Iterable[str]) -> None:
+    """Print warnings on standard error, a line each."""
+    for line in lines:
+        typer.echo(f"tethership: warning: {line}", err=True)
+
+
+def trimmed_start(scenario: Scenario, as_json: bool) -> "TrimPoint":
+    """Return the trim from which a ship can be flown, or say why there is none and exit."""
+    from tethership.analysis import trim
+
+    with stage("trim"):
+        point = trim(scenario)
+    if not point.outcome.is_start:
+        _end(point, as_json)
+    return point
+
+
+def balanced(scenario: Scenario, as_json: bool) -> "TrimPoint":
+    """Return the trim about which a ship can be linearised, or say why there is none and exit."""
+    from tethership.analysis import trim
+
+    with stage("trim"):
+        point = trim(scenario)
+    if not point.outcome.is_balanced:
+        _end(point, as_json)
+    return point
+
+
+def _end(point: "TrimPoint", as_json: bool) -> None:
+    """Say that there is no answer, and exit."""
+    if as_json:
+        print_json(point_keys(point) | {"residual": point.residual})
+    typer.echo(f"tethership: {point.message}", err=True)
+    raise typer.Exit(NO_ANSWER)

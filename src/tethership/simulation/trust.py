@@ -1,0 +1,112 @@
+"""What a flight's result may be used for: limits passed, ground, saturation, the range of its models; in one verdict.
+
+Depends on: simulation.quasi_static, results, scenario. Command, picture, replay and explorer all say these words.
+"""
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+import numpy as np
+import xarray as xr
+
+from tethership.results.limits import HARMFUL, LIMITS
+from tethership.results.metrics import seconds_above
+from tethership.scenario import ScenarioConfig
+from tethership.scenario.wind_file import record_warning
+from tethership.simulation.outcome import Outcome
+from tethership.simulation.quasi_static import quasi_static_warning
+
+WORDS = {
+    "envelope_tear": "the envelope's tear limit",
+    "envelope_tensile": "the envelope's tensile limit",
+    "cable_break": "the cable's breaking force",
+}
+"""What the limits are called in a sentence."""
+
+DIP = 0.01
+"""How far below the ground is told [m]."""
+
+SATURATED = 0.01
+"""Share of a flight with a command beyond its limits from which it is told [-]."""
+
+
+class Flown(Protocol):
+    """What is needed of a flight."""
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Its outputs."""
+        ...
+
+    @property
+    def config(self) -> ScenarioConfig:
+        """Its scenario."""
+        ...
+
+    @property
+    def outcome(self) -> Outcome:
+        """How it ended."""
+        ...
+
+    @property
+    def metrics(self) -> Mapping[str, Any]:
+        """Its metrics."""
+        ...
+
+
+def seconds_passed(flight: Flown) -> dict[str, float]:
+    """Return for how long [s] every watched limit was passed, only those that were; by the names of `results.limits`.
+
+    Tension is that at the tether point; a cable breaks where its largest tension reaches its own breaking force.
+    """
+    if not flight.config.cables:
+        return {}
+    passed = dict(zip(LIMITS, map(float, flight.metrics["seconds_above"]), strict=True))
+    strength = np.array([cable.breaking_force for cable in flight.config.cables])
+    strained = (flight.data["tension_largest"].to_numpy() / strength).max(axis=1)
+    passed["cable_break"] = seconds_above(flight.data["time"].to_numpy(), strained, 1.0)
+    broken = flight.outcome is Outcome.cable_broken or strained.max(initial=0.0) >= 1.0
+    return {name: over for name, over in passed.items() if over > 0.0 or (name == "cable_break" and broken)}
+
+
+def reservations(flight: Flown) -> list[str]:
+    """Return what a bare outcome would hide, a clause each: limits passed, hull below the ground, saturation."""
+    found = [
+        f"{WORDS[name]} was passed for {over:.2f} s"
+        for name, over in seconds_passed(flight).items()
+        if name in HARMFUL and flight.outcome is not Outcome.cable_broken
+    ]
+    time = flight.data["time"].to_numpy()
+    clearance = flight.data["clearance"].to_numpy()
+    if flight.config.has_ground() and clearance.min(initial=0.0) < -DIP:
+        below = seconds_above(time, -clearance, 0.0)
+        found.append(f"the hull was below the ground for {below:.1f} s, by up to {-clearance.min():.2f} m")
+    saturated = flight.metrics["saturated_seconds"]
+    if len(time) and saturated > SATURATED * time[-1]:
+        found.append(f"commands were saturated for {saturated:.1f} s of {time[-1]:.1f} s")
+    return found
+
+
+def verdict(flight: Flown) -> str:
+    """Return how a flight ended and what must be said with it, as one sentence without its full stop."""
+    time = flight.data["time"].to_numpy()
+    after = f" after {time[-1]:.2f} s" if len(time) else " at the start"
+    words = f"{flight.outcome.name.replace('_', ' ')}{after}"
+    reserved = reservations(flight)
+    if not reserved:
+        return words
+    return f"{words}, but {', '.join(reserved[:-1])}{' and ' if reserved[:-1] else ''}{reserved[-1]}"
+
+
+def warnings(flight: Flown) -> list[str]:
+    """Return what must be known besides the verdict: cable below the ground, the ranges of the cable and the wind."""
+    time, dips = flight.data["time"].to_numpy(), flight.data["cable_clearance"].to_numpy()
+    said = [quasi_static_warning(flight), record_warning(flight.config.wind, float(time[-1]) if len(time) else 0.0)]
+    if dips.size and dips.min() < -DIP:
+        below = seconds_above(time, -dips.min(axis=1), 0.0)
+        said.insert(
+            0,
+            f"a cable dips below the ground for {below:.1f} s, by up to {-dips.min():.2f} m; its pull is that of a "
+            "cable hanging free, for contact with the ground is not modelled",
+        )
+    return [line for line in said if line]
