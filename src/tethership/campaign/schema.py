@@ -106,8 +106,8 @@ class CampaignConfig(Table):
     design of Sobol's sensitivity indices). The `worst` and `random` flights are flown again with histories.
     """
 
-    title: str
-    description: str = ""
+    title: Annotated[str, Field(max_length=200)]
+    description: Annotated[str, Field(max_length=10_000)] = ""
     scenario: str
     changes: dict[str, Any] = Field(default_factory=dict)
     samples: Annotated[int, Field(ge=1, le=MOST_CASES)] = 1000

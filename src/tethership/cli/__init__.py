@@ -7,6 +7,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
+from tethership._interrupt import loaded
 from tethership._version import __version__
 from tethership.cli import (
     campaign,
@@ -82,6 +83,7 @@ def _nothing_more_to_say() -> None:
 
 def main() -> None:
     """Run the command with the promised exit codes and one clear line for wrong input."""
+    loaded()
     if sys.stdout is None:
         _fail("standard output is closed, so nothing can be told; leave it open or send it to /dev/null", WRONG_INPUT)
     try:

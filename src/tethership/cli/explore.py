@@ -18,7 +18,7 @@ LOOPBACK = ("127.0.0.1", "localhost")
 
 def explore(
     scenario: ScenarioArgument = "docking",
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Where the page is served; 0 for a free port.")] = 8050,
+    port: Annotated[int, typer.Option(help="Where the page is served; 0 for a free port.")] = 8050,
     host: Annotated[str, typer.Option(help="Only this machine: 127.0.0.1 or localhost.")] = "127.0.0.1",
     folder: Annotated[
         Path | None,

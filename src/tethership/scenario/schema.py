@@ -133,8 +133,8 @@ class LimitsConfig(Table):
 class ScenarioConfig(Table):
     """A flight to be trimmed and flown."""
 
-    title: str
-    description: str = ""
+    title: Annotated[str, Field(max_length=200)]
+    description: Annotated[str, Field(max_length=10_000)] = ""
     vehicle: VehicleConfig
     formulation: Literal["consistent", "published"] = "consistent"
     atmosphere: AirConfig = StandardAir()
