@@ -8,11 +8,13 @@ import os
 import re
 import sys
 import time
+from concurrent.futures import Future
 
 import pytest
 
 import tethership as ts
-from tethership.errors import ConfigError
+from tethership.campaign.execute import _result
+from tethership.errors import ConfigError, SolveError
 from tethership.scenario.load import packaged_text
 from tethership.scenario.names import check_title, check_word
 from tethership.scenario.quantity import converted
@@ -171,6 +173,14 @@ def test_manifest_that_is_none(refusal, tmp_path):
     (tmp_path / "old").mkdir()
     (tmp_path / "old" / "campaign.json").write_text("[]")
     assert "campaign.json is no campaign's" in refusal("campaign", "gusts", "--samples", "20", "--out", "old")
+
+
+def test_lost_cluster():
+    """Its futures are cancelled when the scheduler dies."""
+    future = Future()
+    future.cancel()
+    with pytest.raises(SolveError, match="the cluster was lost"):
+        _result(future)
 
 
 def test_byte_order_mark_is_read(command, tmp_path):

@@ -34,22 +34,30 @@ def check_path(path: str | Path) -> None:
         raise ConfigError(f"the name {shown(text)} {what}; choose another name")
 
 
+def check_file_to_read(path: Path, most_bytes: int = MOST_BYTES) -> None:
+    """Raise ConfigError where a file is not there, not regular (a pipe or device never ends) or too large."""
+    check_path(path)
+    try:
+        found = path.stat()
+    except OSError as error:
+        raise ConfigError(f"cannot read {path}: {error.strerror or error}") from error
+    if not stat.S_ISREG(found.st_mode):
+        raise ConfigError(f"cannot read {path}: it is no regular file; name a file")
+    if found.st_size > most_bytes:
+        size, most = (f"{count / 1e6:.0f} MB" for count in (found.st_size, most_bytes))
+        raise ConfigError(f"cannot read {path}: it has {size}; at most {most} are read")
+
+
 def read_text(path: Path) -> str:
-    """Return the text of a regular UTF-8 file, with or without a byte order mark.
+    """Return the text of a UTF-8 file, with or without a byte order mark.
 
     Raises
     ------
     ConfigError
-        It is not there, no regular file (a pipe or device never ends), larger than `MOST_BYTES`, or no text.
+        As `check_file_to_read`, or it is no text.
     """
-    check_path(path)
+    check_file_to_read(path)
     try:
-        found = path.stat()
-        if not stat.S_ISREG(found.st_mode):
-            raise ConfigError(f"cannot read {path}: it is no regular file; name a file")
-        if found.st_size > MOST_BYTES:
-            size, most = (f"{count / 1e6:.0f} MB" for count in (found.st_size, MOST_BYTES))
-            raise ConfigError(f"cannot read {path}: it has {size}; at most {most} are read")
         return path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
         raise ConfigError(f"cannot read {path}: it is not a text file in UTF-8") from error
