@@ -28,6 +28,10 @@ import importlib
 import os
 from typing import TYPE_CHECKING, Any
 
+import tethership._interrupt  # noqa: F401 (acts on being imported, before what takes long)
+
+# isort: split
+
 os.environ.setdefault("EQX_ON_ERROR", "nan")
 
 import jax

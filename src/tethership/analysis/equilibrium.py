@@ -94,7 +94,10 @@ def solve(problem: Problem) -> np.ndarray:
     low, high = problem.unknowns.bounds()
     for bounded, scale, shift in itertools.product((False, True), (1.0, "jac"), (0.0, 0.3, -0.3, 1.0)):
         begin = np.clip(start + shift * (problem.unknowns.effort == 0), low, high)
-        found = _polished(problem, _searched(problem, begin, scale, bounded))
+        try:
+            found = _polished(problem, _searched(problem, begin, scale, bounded))
+        except ValueError:  # loads or their slopes are not finite there: no search begins or goes on
+            continue
         left = np.abs(_evaluated(problem, found)[0]).max()
         if left < least and np.all((low <= found) & (found <= high)):
             best, least = found, left

@@ -115,8 +115,8 @@ def _message(
             left = left_over(np.asarray(found.clipped), drift, limit)
             lacking = "thrust" if any(thruster.name in needs for thruster in config.vehicle.thrusters) else "deflection"
             return (
-                f"No equilibrium within limits: it would take more {lacking} than there is ({', '.join(needs.values())}); "
-                f"within the limits {left} are left over. {_cure(config, needs)}"
+                f"No equilibrium within limits: it would take more {lacking} than there is "
+                f"({', '.join(needs.values())}); within them {left} are left over. {_cure(config, needs)}"
             )
         case TrimOutcome.hull_below_ground:
             return (

@@ -15,6 +15,7 @@ import xarray as xr
 from tethership._version import __version__
 from tethership.errors import ConfigError, suggestion
 from tethership.results import store
+from tethership.system.names import LENGTH
 
 if TYPE_CHECKING:
     import control
@@ -110,7 +111,7 @@ class LinearModel:
         ConfigError
             They are coupled with the lateral states, so that this would be another ship.
         """
-        return self._part((*LONGITUDINAL, *(name for name in self.states if name.startswith("length_"))))
+        return self._part((*LONGITUDINAL, *(name for name in self.states if name.startswith(LENGTH))))
 
     def lateral(self) -> "LinearModel":
         """Return the model of v, p, r, φ, ψ, east (those that are there); raises as `longitudinal`."""

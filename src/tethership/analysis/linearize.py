@@ -13,7 +13,7 @@ from jaxtyping import Array, Float
 
 from tethership.analysis.differences import central_differences
 from tethership.analysis.linear_model import LinearModel
-from tethership.analysis.right_side import WIND_INPUTS, WIND_UNITS, input_vector, loads, right_side
+from tethership.analysis.right_side import WIND_UNITS, input_vector, loads, right_side
 from tethership.analysis.semi_analytic import semi_analytic
 from tethership.analysis.trim import TrimOutcome, TrimPoint
 from tethership.errors import ConfigError, suggestion
@@ -22,6 +22,7 @@ from tethership.spatial import rotation_matrix
 from tethership.system import Command, State, TetheredAirship
 from tethership.system.airship import mass_matrix
 from tethership.system.balance import DRIFT_LIMIT, drift, left_over, residual_limit
+from tethership.system.names import LENGTH, REWIND_RATE, WIND_INPUTS
 from tethership.system.state import STATE_NAMES, STATE_UNITS
 
 ROUTES = ("exact", "semi_analytic", "differences")
@@ -226,11 +227,11 @@ def _inputs(system: Scenario | TetheredAirship) -> tuple[tuple[str, ...], tuple[
         vehicle = system.config.vehicle
         thrusters = [thruster.name for thruster in vehicle.thrusters]
         fins = [fin.name for fin in vehicle.fins]
-        cables = [f"length_{cable.name}" for cable in system.config.cables]
+        cables = [f"{LENGTH}{cable.name}" for cable in system.config.cables]
     else:
         thrusters = [f"thruster_{i + 1}" for i in range(system.ship.thrusters.count)]
         fins = [f"fin_{i + 1}" for i in range(system.ship.fins.count)]
-        cables = [f"length_cable_{i + 1}" for i in range(len(system.cables))]
+        cables = [f"{LENGTH}cable_{i + 1}" for i in range(len(system.cables))]
     names = (*thrusters, *fins, *WIND_INPUTS, *cables)
     return names, ("1",) * len(thrusters) + ("rad",) * len(fins) + WIND_UNITS + ("m",) * len(cables)
 
@@ -261,7 +262,7 @@ def _with_lengths(model: LinearModel, plant: TetheredAirship) -> LinearModel:
         state,
         control,
         (*model.states, *lengths),
-        (*model.inputs[:kept], *(name.replace("length_", "rewind_rate_", 1) for name in lengths)),
+        (*model.inputs[:kept], *(name.replace(LENGTH, REWIND_RATE, 1) for name in lengths)),
         (*model.state_units, *("m",) * count),
         (*model.input_units[:kept], *("m/s",) * count),
         np.concatenate([model.state_values, model.input_values[kept:]]),

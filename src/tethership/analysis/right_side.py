@@ -15,11 +15,8 @@ from tethership.physics.gust import WindChange
 from tethership.spatial import Wrench
 from tethership.system import Command, State, TetheredAirship
 
-WIND_INPUTS = ("wind_north", "wind_east", "wind_down", "wind_rate_north", "wind_rate_east", "wind_rate_down")
-"""Names of the wind's inputs [m/s, m/s²]."""
-
 WIND_UNITS = ("m/s", "m/s", "m/s", "m/s^2", "m/s^2", "m/s^2")
-"""Their SI units."""
+"""SI units of the wind's inputs, `WIND_INPUTS`."""
 
 
 def input_vector(plant: TetheredAirship, command: Command) -> Float[Array, "inputs"]:

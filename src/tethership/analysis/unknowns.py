@@ -1,4 +1,4 @@
-"""Which quantities a trim looks for, by name. Depends on: system.state, errors."""
+"""Which quantities a trim looks for, by name. Depends on: system.names, errors."""
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -6,11 +6,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from tethership.errors import ConfigError, suggestion
-from tethership.system.state import STATE_NAMES
-
-QUANTITIES = ("velocity_north", "velocity_east", "velocity_down", *STATE_NAMES[3:])
-"""Names of the motion's twelve quantities: ground velocity of P in *ground* axes, then as the states. In ground axes a
-level flight stays level whatever the attitude that is looked for."""
+from tethership.system.names import ALL_FINS, ALL_THRUSTERS, QUANTITIES
 
 DOWN = QUANTITIES.index("down")
 """Place of the height."""
@@ -66,7 +62,7 @@ def find_unknowns(
         A name is no quantity, thruster or fin, or nothing is looked for.
     """
     every = [*QUANTITIES, *thrusters, *fins]
-    groups = {"throttle": thrusters, "deflection": fins}
+    groups = {ALL_THRUSTERS: thrusters, ALL_FINS: fins}
     index: list[int] = []
     for name in names:
         members = groups.get(name, [name])

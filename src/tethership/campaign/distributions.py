@@ -14,6 +14,9 @@ from pydantic import Field, model_validator
 
 from tethership.scenario.quantity import Table, converted
 
+MOST_LEVELS = 100_000
+"""Levels of one quantity on a grid."""
+
 
 class _Spread(Table, abc.ABC):
     """What all have in common: `unit` of the numbers, or `relative`, numbers being multiples of the scenario's."""
@@ -51,7 +54,7 @@ class Uniform(_Spread):
     distribution: Literal["uniform"]
     low: float
     high: float
-    number: Annotated[int, Field(ge=2)] | None = None
+    number: Annotated[int, Field(ge=2, le=MOST_LEVELS)] | None = None
 
     @model_validator(mode="after")
     def _ordered(self) -> "Uniform":
@@ -137,7 +140,7 @@ class Discrete(_Spread):
 
     @model_validator(mode="after")
     def _weighed(self) -> "Discrete":
-        if self.weights is not None and (len(self.weights) != len(self.values) or sum(self.weights) <= 0):
+        if self.weights is not None and (len(self.weights) != len(self.values) or not 0 < sum(self.weights) < math.inf):
             raise ValueError(f"{len(self.values)} values need as many weights, not all zero")
         return self
 

@@ -4,10 +4,12 @@ One loop for all three: what can `submit` is given batches, a few more than it h
 written as it comes. Memory does not grow with the number of cases.
 """
 
+import logging
 import multiprocessing
 import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
+from concurrent.futures import CancelledError as Cancelled
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from typing import Any, NamedTuple, cast
@@ -48,7 +50,7 @@ def fly_campaign(plan: Plan, store: CampaignStore, hands: Hands, progress: Progr
     Raises
     ------
     SolveError
-        A worker died.
+        A worker died, or the cluster was lost.
     ConfigError
         Results cannot be written.
     """
@@ -88,6 +90,13 @@ def _result(future: Future) -> Any:
         raise SolveError("a worker process died; run the same command again to go on from the last batch") from error
     except ModuleNotFoundError as error:
         raise ConfigError(f"a worker lacks {error.name}; install tethership {__version__} where it runs") from error
+    except Exception as error:
+        if not isinstance(error, Cancelled) and type(error).__module__.partition(".")[0] != "distributed":
+            raise
+        raise SolveError(
+            f"the cluster was lost ({type(error).__name__}): its scheduler or too many workers died. Start it again; "
+            "the same command goes on from the last batch"
+        ) from error
 
 
 @contextmanager
@@ -145,6 +154,8 @@ def on_cluster(address: str) -> Iterator[Hands]:
         from distributed import Client
     except ImportError as error:
         raise ConfigError("--scheduler needs dask.distributed: pip install 'tethership[cluster]'") from error
+    for name in ("distributed", "distributed.client"):  # a scheduler that dies would fill the screen
+        logging.getLogger(name).handlers[:] = [logging.NullHandler()]
     try:
         client = Client(address, timeout=CONNECT)
     except (OSError, TimeoutError, ValueError) as error:

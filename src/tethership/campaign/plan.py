@@ -14,8 +14,8 @@ from tethership._version import __version__
 from tethership.campaign.flights import BATCH, FEW, SWITCHES
 from tethership.campaign.sampling import Sample, draw
 from tethership.campaign.schema import CampaignConfig, LawConfig
-from tethership.errors import ConfigError
-from tethership.scenario import Scenario, find_parameter, list_parameters, load_scenario
+from tethership.errors import ConfigError, shown
+from tethership.scenario import Scenario, check_values, find_parameter, list_parameters, load_scenario
 from tethership.scenario.changes import Document
 from tethership.scenario.control_schema import LAYERS
 from tethership.scenario.load import read_document, validated
@@ -163,6 +163,9 @@ def make_plan(name: str, changes: dict[str, Any] | None = None, scenario_changes
         Anything in the file that cannot be.
     """
     document = {**read_document("campaigns", name), **(changes or {})}
+    for key in ("changes", "vary"):
+        if not isinstance(document.get(key, {}), dict):
+            raise ConfigError(f"{name}: {key} is {shown(document[key])}; give a table of dotted names")
     if scenario_changes:
         document["changes"] = {**document.get("changes", {}), **scenario_changes}
         document["vary"] = {k: v for k, v in document.get("vary", {}).items() if k not in scenario_changes}
@@ -237,7 +240,9 @@ def _gains(scenario: Scenario, law: LawConfig) -> dict[str, float]:
         other = list_parameters(load_scenario(law.gains_of).config)
         found |= {n: p.value for n, p in other.items() if n.startswith("control.") and "*" not in n and n in known}
     for name, value in law.changes.items():
-        found[find_parameter(known, name, scenario.name).name] = value
+        parameter = find_parameter(known, name, scenario.name)
+        check_values(scenario, [parameter], [value])
+        found[parameter.name] = value
     for layer, names in SWITCHES.items():
         for name in names:
             found[name] = found.get(name, known[name].value) if layer in law.layers else 0.0

@@ -4,12 +4,13 @@ The same seed gives the same cases, on any number of workers: they are all drawn
 """
 
 import itertools
+import math
 from typing import NamedTuple
 
 import numpy as np
 import scipy.stats
 
-from tethership.campaign.schema import CampaignConfig
+from tethership.campaign.schema import MOST_CASES, CampaignConfig
 from tethership.errors import ConfigError
 from tethership.scenario import Parameter, Scenario, check_values, find_parameter, list_parameters
 
@@ -91,6 +92,9 @@ def _grid(campaign: CampaignConfig, parameters: list[Parameter], origin: str) ->
         except ValueError as error:
             raise ConfigError(f"{origin}: vary.{name}: {error}") from error
         axes.append(_in_si(campaign, parameter, levels, name, origin))
+    cases = math.prod(map(len, axes))
+    if cases > MOST_CASES:
+        raise ConfigError(f"{origin}: a grid of {cases} cases is too large (at most {MOST_CASES}); take fewer levels")
     return np.array(list(itertools.product(*axes)))
 
 

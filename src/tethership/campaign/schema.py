@@ -7,7 +7,11 @@ from pydantic import Field, field_validator, model_validator
 
 from tethership.campaign.distributions import Distribution
 from tethership.scenario.control_schema import check_layers
+from tethership.scenario.names import Title, check_apart
 from tethership.scenario.quantity import Quantity, Table
+
+MOST_CASES = 10_000_000
+"""Cases of a campaign."""
 
 Probability = Annotated[float, Field(gt=0.0, lt=1.0)]
 
@@ -45,7 +49,7 @@ class CorrelatedGroup(Table):
         matrix = np.array(self.correlation)
         if not np.allclose(matrix, matrix.T) or not np.allclose(np.diag(matrix), 1.0):
             raise ValueError("the correlation must be symmetric with ones on its diagonal")
-        if np.linalg.eigvalsh(matrix)[0] <= 1e-9:
+        if np.abs(matrix).max() > 1.0 or np.linalg.eigvalsh(matrix)[0] <= 1e-9:
             raise ValueError("the correlation is not positive definite: these numbers cannot belong together")
         return self
 
@@ -57,7 +61,7 @@ class LawConfig(Table):
     (dotted name, SI).
     """
 
-    name: str
+    name: Title
     layers: tuple[str, ...]
     gains_of: str | None = None
     changes: dict[str, float] = Field(default_factory=dict)
@@ -102,11 +106,11 @@ class CampaignConfig(Table):
     design of Sobol's sensitivity indices). The `worst` and `random` flights are flown again with histories.
     """
 
-    title: str
-    description: str = ""
+    title: Annotated[str, Field(max_length=200)]
+    description: Annotated[str, Field(max_length=10_000)] = ""
     scenario: str
     changes: dict[str, Any] = Field(default_factory=dict)
-    samples: Annotated[int, Field(ge=1, le=10_000_000)] = 1000
+    samples: Annotated[int, Field(ge=1, le=MOST_CASES)] = 1000
     seed: Annotated[int, Field(ge=0)] = 1
     sampling: Literal["random", "sobol", "latin_hypercube", "grid", "saltelli"] = "random"
     replicates: Annotated[int, Field(ge=4, le=64)] = 8
@@ -133,8 +137,7 @@ class CampaignConfig(Table):
         if grouped and self.sampling in ("grid", "saltelli"):
             raise ValueError(f"sampling {self.sampling!r} takes independent quantities; take correlated out")
         names = [law.name for law in self.laws]
-        if len(set(names)) != len(names):
-            raise ValueError("two laws have the same name; every name must be its own")
+        check_apart(names, "laws")
         for requirement in self.requirements:
             if requirement.law is not None and requirement.law not in names:
                 raise ValueError(f"requirement names the law {requirement.law!r}; known: {', '.join(names) or 'none'}")

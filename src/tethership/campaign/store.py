@@ -172,9 +172,12 @@ def read_manifest(folder: Path) -> dict[str, Any] | None:
     if not path.is_file():
         return None
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
         raise ConfigError(f"cannot read {path}: {error}; choose another --out") from error
+    if not isinstance(found, dict):
+        raise ConfigError(f"{path} is no campaign's; choose another --out")
+    return found
 
 
 def open_results(folder: str | Path) -> xr.Dataset:

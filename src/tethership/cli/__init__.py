@@ -1,10 +1,13 @@
 """The command `tethership`. Exits 0 on success, 2 on wrong input, 3 when a computation has no answer."""
 
+import contextlib
+import os
 import sys
-from typing import Annotated
+from typing import Annotated, NoReturn
 
 import typer
 
+from tethership._interrupt import loaded
 from tethership._version import __version__
 from tethership.cli import (
     campaign,
@@ -21,8 +24,9 @@ from tethership.cli import (
     tune,
     view,
 )
+from tethership.cli.checked import checked
 from tethership.cli.common import NO_ANSWER, WRONG_INPUT
-from tethership.errors import ConfigError, SolveError
+from tethership.errors import ConfigError, SolveError, one_line
 
 INTERRUPTED = 130
 """What typer returns after Ctrl-C."""
@@ -49,38 +53,52 @@ def _root(
         typer.echo(context.get_help())
 
 
-app.command("dock", epilog=dock.EXAMPLE)(dock.dock)
-app.command("trim", epilog=trim.EXAMPLE)(trim.trim)
-app.command("modes", epilog=modes.EXAMPLE)(modes.modes)
-app.command("sweep", epilog=sweep.EXAMPLE)(sweep.sweep)
-app.command("tension", epilog=tension.EXAMPLE)(tension.tension)
-app.command("identify", epilog=identify.EXAMPLE)(identify.identify)
-app.command("tune", epilog=tune.EXAMPLE)(tune.tune)
-app.command("reproduce", epilog=reproduce.EXAMPLE)(reproduce.reproduce)
-app.command("campaign", epilog=campaign.EXAMPLE)(campaign.campaign)
-app.command("view", epilog=view.EXAMPLE)(view.view)
-app.command("explore", epilog=explore.EXAMPLE)(explore.explore)
-app.command("list", epilog=listing.EXAMPLE)(listing.list_)
-app.command("validate", epilog=files.VALIDATE_EXAMPLE)(files.validate)
-app.command("new", epilog=files.NEW_EXAMPLE)(files.new)
+app.command("dock", epilog=dock.EXAMPLE)(checked(dock.dock))
+app.command("trim", epilog=trim.EXAMPLE)(checked(trim.trim))
+app.command("modes", epilog=modes.EXAMPLE)(checked(modes.modes))
+app.command("sweep", epilog=sweep.EXAMPLE)(checked(sweep.sweep))
+app.command("tension", epilog=tension.EXAMPLE)(checked(tension.tension))
+app.command("identify", epilog=identify.EXAMPLE)(checked(identify.identify))
+app.command("tune", epilog=tune.EXAMPLE)(checked(tune.tune))
+app.command("reproduce", epilog=reproduce.EXAMPLE)(checked(reproduce.reproduce))
+app.command("campaign", epilog=campaign.EXAMPLE)(checked(campaign.campaign))
+app.command("view", epilog=view.EXAMPLE)(checked(view.view))
+app.command("explore", epilog=explore.EXAMPLE)(checked(explore.explore))
+app.command("list", epilog=listing.EXAMPLE)(checked(listing.list_))
+app.command("validate", epilog=files.VALIDATE_EXAMPLE)(checked(files.validate))
+app.command("new", epilog=files.NEW_EXAMPLE)(checked(files.new))
 
 
-def _fail(message: str, code: int) -> None:
+def _fail(message: str, code: int) -> NoReturn:
     """Print one line on standard error and exit."""
-    typer.echo(f"tethership: {' '.join(message.split())}", err=True)
+    typer.echo(f"tethership: {one_line(message)}", err=True)
     sys.exit(code)
+
+
+def _nothing_more_to_say() -> None:
+    """Point standard output elsewhere: Python would try again to write what could not be, and print a traceback."""
+    with contextlib.suppress(OSError, ValueError, AttributeError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def main() -> None:
     """Run the command with the promised exit codes and one clear line for wrong input."""
+    loaded()
+    if sys.stdout is None:
+        _fail("standard output is closed, so nothing can be told; leave it open or send it to /dev/null", WRONG_INPUT)
     try:
         code = app(prog_name="tethership", standalone_mode=False)
+        sys.stdout.flush()
     except ConfigError as error:
         _fail(str(error), WRONG_INPUT)
     except SolveError as error:
         _fail(str(error), NO_ANSWER)
     except (KeyboardInterrupt, typer.Abort):
         _fail("interrupted before anything was flown", NO_ANSWER)
+    except OSError as error:
+        _nothing_more_to_say()
+        place = "standard output" if error.filename is None else str(error.filename)
+        _fail(f"cannot write or read {place}: {error.strerror or error}", WRONG_INPUT)
     except Exception as error:
         # typer carries a copy of click of its own: its usage errors are known by what they can do.
         spoken = getattr(error, "format_message", None)

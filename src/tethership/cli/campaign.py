@@ -21,7 +21,8 @@ from tethership.cli.common import (
 from tethership.cli.completion import complete_campaign
 from tethership.cli.progress import Report, progress_bar
 from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
-from tethership.errors import SolveError
+from tethership.errors import ConfigError, SolveError
+from tethership.scenario.names import check_title
 
 EXAMPLE = "Example: tethership campaign gusts --samples 1000 --workers 2"
 
@@ -66,7 +67,7 @@ def campaign(
     own = {
         key: value for key, value in (("samples", samples), ("seed", seed), ("sampling", sampling)) if value is not None
     }
-    folder = Path("campaigns") / Path(name).stem if out is None else out
+    folder = _own_folder(name) if out is None else out
     writable_csv(csv)
     begun = time.perf_counter()
     with progress_bar(f"campaign {Path(name).stem}") as report:
@@ -86,6 +87,14 @@ def campaign(
         most = max(result["outcomes"], key=lambda name: result["outcomes"][name])
         typer.echo(f"tethership: no flight has a result ({most}): nothing can be said of the odds", err=True)
         raise typer.Exit(NO_ANSWER)
+
+
+def _own_folder(name: str) -> Path:
+    """Return the folder of a campaign that was given none, by the name of its file."""
+    try:
+        return Path("campaigns") / check_title(Path(name).stem)
+    except ValueError as error:
+        raise ConfigError(f"{error}; rename the file or choose a folder with --out") from error
 
 
 def _counted(report: Report) -> Callable[[int, int], None]:

@@ -12,9 +12,10 @@ from typing import Annotated, Any
 import typer
 
 from tethership.cli.completion import complete_formulation, complete_parameter, complete_scenario
-from tethership.errors import ConfigError
+from tethership.errors import ConfigError, shown
 from tethership.scenario import Scenario, load_scenario
-from tethership.scenario.quantity import NUMBER_WITH_UNIT
+from tethership.scenario.quantity import number_with_unit
+from tethership.scenario.reading import parse_json
 
 WRONG_INPUT = 2
 """Exit code for wrong input."""
@@ -94,14 +95,11 @@ def _change(text: str) -> tuple[str, Any]:
     """Return key and value of `key=value`; JSON, a number with a unit, or else a word."""
     key, equals, value = text.partition("=")
     if not equals or not key:
-        raise ConfigError(f"--set {text!r} is no change; write --set key=value, e.g. --set wind.speed=9")
-    try:
-        return key, json.loads(value)
-    except json.JSONDecodeError:
-        with_unit = NUMBER_WITH_UNIT.fullmatch(value)
+        raise ConfigError(f"--set {shown(text)} is no change; write --set key=value, e.g. --set wind.speed=9")
+    with_unit = number_with_unit(value)
     if with_unit is None:
-        return key, value
-    return key, {"value": float(with_unit["number"]), "unit": with_unit["unit"]}
+        return key, parse_json(value, f"--set {shown(key)}")
+    return key, dict(zip(("value", "unit"), with_unit, strict=True))
 
 
 def json_text(result: dict[str, Any]) -> str:

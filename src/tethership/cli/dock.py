@@ -25,6 +25,7 @@ from tethership.cli.points import trimmed_start, warn
 from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario
+from tethership.scenario.load import read_solver
 
 if TYPE_CHECKING:
     from tethership.analysis import TrimPoint
@@ -64,16 +65,19 @@ def dock(
         raise ConfigError(
             "--from flies the stored input as it is; leave out the scenario and all flags but --out, --csv, --json"
         )
-    writable_folder(out)
-    writable_csv(csv)
     if from_ is not None and from_.resolve() == (out / "flight.nc").resolve():
         raise ConfigError(f"--from {from_} would be overwritten; choose another folder with --out")
     if from_ is not None:
+        writable_folder(out)
+        writable_csv(csv)
         flown_scenario, flight, trim_outcome = _again(from_)
     else:
         flown_scenario = chosen_scenario(scenario, wind, formulation, changes)
         names = None if layers is None else _split(layers)
         flown_scenario.law(names)  # a wrong name is found before anything is computed
+        read_solver(solver)
+        writable_folder(out)
+        writable_csv(csv)
         point = trimmed_start(flown_scenario, json)
         trim_outcome = point.outcome.name
         flight = _flown(flown_scenario, point, names, False if no_sas else None, solver)

@@ -9,6 +9,7 @@ from tethership.cli.common import JsonOption, print_json
 from tethership.cli.completion import complete_scenario
 from tethership.errors import ConfigError
 from tethership.scenario.load import check_file, packaged_text, read_document
+from tethership.scenario.names import check_title
 
 VALIDATE_EXAMPLE = "Example: tethership validate my_docking.toml"
 NEW_EXAMPLE = "Example: tethership new my_docking"
@@ -45,13 +46,17 @@ def new(
     json: JsonOption = False,
 ) -> None:
     """Write a commented copy of a packaged scenario and its vehicle, to edit."""
-    name = name.removesuffix(".toml")
+    given = Path(name.removesuffix(".toml"))
+    try:
+        check_title(given.name)
+    except ValueError as error:
+        raise ConfigError(f"{error}; a folder goes before it or into --out") from error
     text = packaged_text("scenarios", scenario)
     vehicle = next(line for line in text.splitlines() if line.startswith("vehicle ="))
     source = vehicle.split('"')[1]
     texts = {
-        out / f"{name}.toml": text.replace(vehicle, f'vehicle = "{Path(name).name}_vehicle.toml"'),
-        out / f"{name}_vehicle.toml": packaged_text("vehicles", source),
+        out / f"{given}.toml": text.replace(vehicle, f'vehicle = "{given.name}_vehicle.toml"'),
+        out / f"{given}_vehicle.toml": packaged_text("vehicles", source),
     }
     for path in texts:
         if path.exists():

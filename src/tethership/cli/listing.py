@@ -8,7 +8,7 @@ import typer
 from tethership.cli.common import JsonOption, ScenarioOption, print_json
 from tethership.cli.completion import complete_kind
 from tethership.cli.tables import CsvOption, writable_csv, write_csv
-from tethership.errors import ConfigError, suggestion
+from tethership.errors import ConfigError, shown, suggestion
 from tethership.results.schema import VARIABLES
 from tethership.scenario import list_parameters, load_scenario
 from tethership.scenario.load import KINDS, describe_packaged
@@ -35,9 +35,9 @@ def list_(
 
     Parameters are what --set, --over and a campaign's [vary] take, in SI units and radians.
     """
-    writable_csv(csv)
     if kind is not None and kind not in LISTS:
-        raise ConfigError(f"there is no list {kind!r}{suggestion(kind, LISTS)} Allowed: {', '.join(LISTS)}")
+        raise ConfigError(f"there is no list {shown(kind)}{suggestion(kind, LISTS)} Allowed: {', '.join(LISTS)}")
+    writable_csv(csv)
     if kind == "outputs":
         _show(kind, _outputs(), csv, json)
     elif kind == "parameters":

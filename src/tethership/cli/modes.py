@@ -58,9 +58,9 @@ def modes(
 
     if part not in PARTS:
         raise ConfigError(f"--part {part!r} is no part{suggestion(part, PARTS)} Allowed: {', '.join(PARTS)}")
+    loaded = chosen_scenario(scenario, wind, formulation, changes)
     writable_csv(csv)
     folder = None if out is None else writable_folder(out)
-    loaded = chosen_scenario(scenario, wind, formulation, changes)
     point = balanced(loaded, json)
     with stage("linearise"):
         model = _part(linearize(loaded, point), part)

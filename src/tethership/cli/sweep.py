@@ -1,6 +1,5 @@
 """`tethership sweep`: root loci along parameters, or Figures 6–11 of the paper."""
 
-import json as json_module
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -27,9 +26,10 @@ from tethership.cli.common import (
 from tethership.cli.completion import complete_parameter
 from tethership.cli.points import warn
 from tethership.cli.tables import CsvOption, writable_csv, write_csv
-from tethership.errors import ConfigError
+from tethership.errors import ConfigError, shown
 from tethership.scenario import Scenario
-from tethership.scenario.quantity import NUMBER_WITH_UNIT
+from tethership.scenario.quantity import number_with_unit
+from tethership.scenario.reading import parse_json
 
 if TYPE_CHECKING:
     from tethership.analysis import Sweep
@@ -64,15 +64,18 @@ def sweep(
     """
     if (over is None) == (figure is None):
         raise ConfigError("name what to vary, --over wind=6:12:13, or a figure of the paper, --figure 7 (not both)")
-    writable_folder(out)
-    writable_csv(csv)
     if figure is not None:
         if scenario != "docking":
             raise ConfigError(f"--figure has its own scenarios; leave out {scenario!r}, or change values with --set")
+        writable_folder(out)
+        writable_csv(csv)
         result, found = _figures(figure, formulation, _set(wind, changes), out)
     else:
         loaded = chosen_scenario(scenario, wind, formulation, changes)
-        result, found = _swept(loaded, over or [], out)
+        axes = [_axis(loaded, text) for text in over or []]
+        writable_folder(out)
+        writable_csv(csv)
+        result, found = _swept(loaded, axes, out)
     if csv is not None:
         names = list(dict.fromkeys(name for one in found for name in one.values))
         result["files"] += write_csv(csv, [*names, "track", "real", "imaginary", "outcome"], _csv_rows(found, names))
@@ -91,11 +94,10 @@ def _set(wind: float | None, changes: list[str] | None) -> dict[str, Any]:
     return parsed_changes(changes) | ({} if wind is None else {"wind.speed": wind})
 
 
-def _swept(scenario: Scenario, over: list[str], out: Path) -> tuple[dict[str, Any], list["Sweep"]]:
+def _swept(scenario: Scenario, axes: list[dict[str, np.ndarray]], out: Path) -> tuple[dict[str, Any], list["Sweep"]]:
     """Return the result of a sweep; writes root_locus.png and root_locus.html."""
     from tethership.analysis import sweep as compute
 
-    axes = [_axis(scenario, text) for text in over]
     with stage("sweep"):
         found = compute(scenario, *axes)
     head = {"wind": scenario.config.wind.speed, "formulation": scenario.formulation}
@@ -196,9 +198,9 @@ def _axis(scenario: Scenario, text: str) -> dict[str, np.ndarray]:
     for part in _parts(text):
         name, equals, values = part.partition("=")
         if not equals or not name or not values:
-            raise ConfigError(f"--over {part!r} is no range; write --over name=from:to:points, e.g. wind=6:12:13")
+            raise ConfigError(f"--over {shown(part)} is no range; write --over name=from:to:points, e.g. wind=6:12:13")
         if name.strip() in axis:
-            raise ConfigError(f"--over {text!r}: {name.strip()} is named twice; name each parameter once")
+            raise ConfigError(f"--over {shown(text)}: {name.strip()} is named twice; name each parameter once")
         axis[name.strip()] = _listed(part, values) if values.startswith("[") else _range(scenario, name.strip(), values)
     return axis
 
@@ -218,9 +220,9 @@ def _parts(text: str) -> list[str]:
 def _listed(part: str, values: str) -> np.ndarray:
     """Return the values of name=[v1,v2,…]."""
     try:
-        return np.array(json_module.loads(values), dtype=float)
+        return np.array(parse_json(values, f"--over {shown(part)}"), dtype=float)
     except (ValueError, TypeError) as error:
-        raise ConfigError(f"--over {part!r}: {values} is no list of numbers; write e.g. wind=[6,9,12]") from error
+        raise ConfigError(f"--over {shown(part)} is no list of numbers; write e.g. wind=[6,9,12]") from error
 
 
 def _range(scenario: Scenario, name: str, text: str) -> np.ndarray:
@@ -229,10 +231,7 @@ def _range(scenario: Scenario, name: str, text: str) -> np.ndarray:
     if len(pieces) not in (2, 3):
         raise ConfigError(f"--over {name}={text}: write from:to:points, e.g. {name}=6:12:13")
     low, high = (_number(scenario, name, piece) for piece in pieces[:2])
-    try:
-        count = int(pieces[2]) if len(pieces) == 3 else 25
-    except ValueError as error:
-        raise ConfigError(f"--over {name}={text}: {pieces[2]!r} is no number of points") from error
+    count = _points(name, text, pieces[2]) if len(pieces) == 3 else 25
     if count < 1 or (low == high and count > 1):
         raise ConfigError(f"--over {name}={text}: the range is empty; give two different ends and at least one point")
     if high < low:
@@ -242,22 +241,30 @@ def _range(scenario: Scenario, name: str, text: str) -> np.ndarray:
     return np.linspace(low, high, count)
 
 
+def _points(name: str, text: str, typed: str) -> int:
+    """Return the number of points, no more than a sweep may have."""
+    from tethership.analysis.grid import MOST_POINTS
+
+    try:
+        count = int(typed)
+    except ValueError as error:
+        raise ConfigError(f"--over {name}={text}: {shown(typed)} is no number of points") from error
+    if count > MOST_POINTS:
+        raise ConfigError(f"--over {name}={text}: {typed} points are too many (at most {MOST_POINTS}); sweep in parts")
+    return count
+
+
 def _number(scenario: Scenario, name: str, text: str) -> float:
     """Return one end of a range [SI]; a unit is converted to that of the parameter."""
     from tethership.scenario.parameters import find_parameter, list_parameters
-    from tethership.scenario.quantity import converted
+    from tethership.scenario.quantity import SI_UNIT, converted
 
     parameter = find_parameter(list_parameters(scenario.config), name, scenario.name)
-    with_unit = NUMBER_WITH_UNIT.fullmatch(text.strip())
+    with_unit = number_with_unit(text)
     try:
-        if with_unit is not None:
-            return converted(float(with_unit["number"]), with_unit["unit"], parameter.unit)
-        value = float(text)
+        return converted(*with_unit, parameter.unit) if with_unit else converted(float(text), SI_UNIT, parameter.unit)
     except ValueError as error:
-        raise ConfigError(f"--over {name}: {text!r} is no number for an end ({error})") from error
-    if not math.isfinite(value):
-        raise ConfigError(f"--over {name}: the end {text!r} is not a finite number")
-    return value
+        raise ConfigError(f"--over {name}: {shown(text)} is no number for an end: {error}") from error
 
 
 def _lacking(found: "Sweep", point: int) -> str:

@@ -54,12 +54,12 @@ def tension(
     """
     loaded = chosen_scenario(scenario, wind, formulation, changes)
     index = _cable_index(loaded, cable)
-    writable_csv(csv)
-    folder = None if out is None else writable_folder(out)
     chosen = loaded.config.cables[index]
     reach = chosen.length if length is None else length
     if not reach > 0:
         raise ConfigError(f"--length is {reach:g}; it must be above 0 m")
+    writable_csv(csv)
+    folder = None if out is None else writable_folder(out)
     place = np.array(chosen.anchor if anchor is None else anchor)
     result = _computed(loaded, index, np.array(end), place, reach, np.array(velocity), wind_vector)
     if folder is not None:

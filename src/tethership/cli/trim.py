@@ -54,9 +54,9 @@ def trim(
     from tethership.analysis import trim as solve
     from tethership.system.state import STATE_NAMES
 
+    loaded = chosen_scenario(scenario, wind, formulation, changes)
     writable_csv(csv)
     folder = None if out is None else writable_folder(out)
-    loaded = chosen_scenario(scenario, wind, formulation, changes)
     names = None if unknowns is None else [name.strip() for name in unknowns.split(",")]
     with stage("trim"):
         point = solve(loaded, names)

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from tethership.errors import ConfigError
 from tethership.explorer.fields import in_si, known_parameters, shown, typed
 from tethership.scenario import Parameter, Scenario
-from tethership.scenario.changes import Document
+from tethership.scenario.changes import Document, is_share
 from tethership.scenario.control_schema import LAYERS
 from tethership.scenario.parameters import missing_kind, value_at
 
@@ -115,7 +115,7 @@ def _switches(base: Scenario, form: Form, words: list[str]) -> dict[str, Any]:
 
 def _value(base: Scenario, parameter: Parameter, key: str, entries: dict[tuple[int, ...], tuple[float, str]]) -> Any:
     """Return the value of a key as `load_scenario` takes it: bare in SI, else with its unit."""
-    bare = key.startswith("vehicle.") or key.split(".")[-2].endswith("share")
+    bare = key.startswith("vehicle.") or is_share(key.split(".")[:-1])
     if () in entries:
         value, unit = entries[()]
         if bare or unit == parameter.unit:

@@ -8,8 +8,9 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from tethership.errors import ConfigError
+from tethership.errors import shown as shown_text
 from tethership.scenario import Parameter, ScenarioConfig, list_parameters
-from tethership.scenario.quantity import NUMBER_WITH_UNIT, converted
+from tethership.scenario.quantity import converted, number_with_unit
 
 SHOWN_UNITS = {"rad": "deg"}
 """Units in which numbers are shown and typed, where that is not the SI unit."""
@@ -160,17 +161,17 @@ def typed(parameter: Parameter, text: str, words: str | None = None) -> tuple[fl
         It is no number, or its unit does not fit.
     """
     unit, words = shown_unit(parameter), words or parameter.name
-    with_unit = NUMBER_WITH_UNIT.fullmatch(text.strip())
+    with_unit = number_with_unit(text)
     try:
         if with_unit is not None:
-            converted(float(with_unit["number"]), with_unit["unit"], parameter.unit)
-            return float(with_unit["number"]), with_unit["unit"]
+            converted(*with_unit, parameter.unit)
+            return with_unit
         value = float(text)
     except ValueError as error:
-        reason = str(error) if with_unit is not None else f"{text!r} is no number"
+        reason = str(error) if with_unit is not None else f"{shown_text(text)} is no number"
         raise ConfigError(f"{words}: {reason}; write a number in {unit}, or with its unit") from error
     if not math.isfinite(value):
-        raise ConfigError(f"{words}: {text!r} is not a finite number; write a number in {unit}")
+        raise ConfigError(f"{words}: {shown_text(text)} is not a finite number; write a number in {unit}")
     return value, unit
 
 

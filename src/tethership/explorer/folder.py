@@ -1,12 +1,12 @@
 """The one folder that the explorer reads and writes; nothing outside it is touched. Depends on: scenario."""
 
 import re
-import tomllib
 from pathlib import Path
 from typing import Any
 
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario, list_packaged, load_scenario
+from tethership.scenario.load import read_document
 
 FILE_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,80}\.toml")
 """Names that may be read and written: no separators, nothing hidden."""
@@ -125,6 +125,6 @@ class Folder:
 def _document(path: Path) -> dict[str, Any]:
     """Return a TOML file as read; nothing of it where it cannot be read, which loading it then says."""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError):
+        return read_document("scenarios", str(path))
+    except ConfigError:
         return {}

@@ -18,6 +18,7 @@ from tethership.explorer.folder import Folder
 from tethership.explorer.recipe import Span, command, file_text
 from tethership.scenario import Parameter, Scenario, find_parameter
 from tethership.scenario.load import packaged_text
+from tethership.scenario.reading import read_text
 
 MOST_POINTS = 400
 """Points of a root locus at most."""
@@ -110,7 +111,7 @@ class Understanding:
         """Return the scenario file that gives a request's numbers; errors as `recipe.file_text`."""
         name = request.choice.scenario
         packaged = not name.endswith(".toml")
-        text = packaged_text("scenarios", name) if packaged else Path(request.path).read_text(encoding="utf-8")
+        text = packaged_text("scenarios", name) if packaged else read_text(Path(request.path))
         return file_text(self.base(name), text, request.choice)
 
     def _as_typed(self, request: Request) -> str:

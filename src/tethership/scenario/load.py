@@ -3,7 +3,6 @@
 import copy
 import dataclasses
 import json
-import tomllib
 from collections.abc import Iterable, Mapping
 from importlib import resources
 from pathlib import Path
@@ -12,13 +11,14 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from tethership.control import LayeredLaw
-from tethership.errors import ConfigError, suggestion
+from tethership.errors import ConfigError, shown, suggestion
 from tethership.scenario.build import assemble
 from tethership.scenario.changes import Document, change
 from tethership.scenario.control_schema import check_layers
 from tethership.scenario.laws import build_law
 from tethership.scenario.messages import first_problem
 from tethership.scenario.quantity import Table
+from tethership.scenario.reading import parse_toml, read_text
 from tethership.scenario.schema import ScenarioConfig
 from tethership.scenario.solver import SolverConfig
 from tethership.scenario.vehicle_schema import VehicleConfig
@@ -117,7 +117,7 @@ def packaged_text(folder: str, name: str) -> str:
     if name in files:
         return files[name].read_text(encoding="utf-8")
     raise ConfigError(
-        f"no {folder[:-1]} {name!r}{suggestion(name, files)} Packaged: {', '.join(sorted(files))}; "
+        f"no {folder[:-1]} {shown(name)}{suggestion(name, files)} Packaged: {', '.join(sorted(files))}; "
         "a file of your own ends in .toml"
     )
 
@@ -125,26 +125,14 @@ def packaged_text(folder: str, name: str) -> str:
 def _read(folder: str, name: str, base: Path | None = None) -> tuple[Document, str]:
     """Return a document and where it came from."""
     if not name.endswith(".toml"):
-        return _parsed(packaged_text(folder, name), name), name
+        return parse_toml(packaged_text(folder, name), name), name
     path = Path(name) if base is None or Path(name).is_absolute() else base / name
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else "it is not a text file"
-        raise ConfigError(f"cannot read {path}: {reason}") from error
-    return _parsed(text, str(path)), str(path)
+    return parse_toml(read_text(path), str(path)), str(path)
 
 
 def read_document(folder: str, name: str) -> Document:
     """Return the document of a packaged file by name, or of a path that ends in `.toml`; errors as `load_scenario`."""
     return _read(folder, name)[0]
-
-
-def _parsed(text: str, origin: str) -> Document:
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"{origin} is not TOML: {error}") from error
 
 
 def validated(model: type[ModelType], document: Document, origin: str) -> ModelType:
@@ -190,7 +178,9 @@ def load_scenario(name: str = "docking", changes: Mapping[str, Any] | None = Non
         document["vehicle"], vehicle_origin = _read("vehicles", vehicle, base)
         validated(VehicleConfig, document["vehicle"], vehicle_origin)
     own_changes = document.pop("changes", {})
-    for key, value in {**own_changes, **(changes or {})}.items():
+    if not isinstance(own_changes, dict):
+        raise ConfigError(f"{origin}: changes is {shown(own_changes)}; give a table, [changes], of dotted names")
+    for key, value in {**own_changes, **changes}.items():
         change(document, key, value, origin)
     return from_document(document, origin)
 
@@ -225,7 +215,7 @@ def describe_packaged() -> dict[str, dict[str, str]]:
     """Return what is packaged: kind → name → one line."""
     found: dict[str, dict[str, str]] = {}
     for kind in KINDS:
-        documents = {name: _parsed(packaged_text(kind, name), name) for name in sorted(_packaged(kind))}
+        documents = {name: parse_toml(packaged_text(kind, name), name) for name in sorted(_packaged(kind))}
         found[kind] = {name: d.get("description") or d.get("title", "") for name, d in documents.items()}
     return found
 

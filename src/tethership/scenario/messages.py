@@ -1,8 +1,10 @@
-"""One clear line out of pydantic's list of problems. Depends on: pydantic."""
+"""One clear line out of pydantic's list of problems. Depends on: pydantic, errors."""
 
 from typing import Any
 
 from pydantic import ValidationError
+
+from tethership.errors import MOST_LETTERS, shown
 
 
 def first_problem(error: ValidationError, origin: str, document: Any) -> str:
@@ -47,7 +49,7 @@ def _dotted(document: Any, location: tuple[int | str, ...], missing: bool) -> st
         here = here[step]  # pyright: ignore[reportCallIssue, reportArgumentType]
         name = here.get("name") if inside_list and isinstance(here, dict) else None
         keys.append(str(name or step))
-    return ".".join(keys)
+    return ".".join(key if len(key) <= MOST_LETTERS else shown(key) for key in keys)
 
 
 def _said(problem: Any) -> str:
@@ -56,7 +58,7 @@ def _said(problem: Any) -> str:
     if kind == "missing" and isinstance(problem["loc"][-1], int):
         return "there are too few numbers in the list"
     if kind == "tuple_type":
-        return f'it is {problem["input"]!r}; give a list, e.g. ["rewind"]'
+        return f'it is {shown(problem["input"])}; give a list, e.g. ["rewind"]'
     if kind == "missing":
         return "it is missing; add it (`tethership new` writes a complete file to start from)"
     if kind in ("union_tag_not_found", "union_tag_invalid"):
@@ -64,4 +66,4 @@ def _said(problem: Any) -> str:
         return f"give {context['discriminator']} as one of {context.get('expected_tags', 'the known kinds')}"
     if kind == "value_error":
         return str(problem["ctx"]["error"])
-    return f"it is {problem['input']!r}; {problem['msg'][0].lower()}{problem['msg'][1:]}"
+    return f"it is {shown(problem['input'])}; {problem['msg'][0].lower()}{problem['msg'][1:]}"

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, get_args
 import jax
 from jax.tree_util import DictKey, GetAttrKey, SequenceKey
 
-from tethership.errors import ConfigError
+from tethership.errors import MOST_LETTERS, ConfigError, shown
 from tethership.scenario.changes import Document, change
 from tethership.scenario.load import Scenario, from_document, validated
 from tethership.scenario.quantity import Quantity, Table
@@ -146,10 +146,10 @@ def find_parameter(known: Mapping[str, Parameter], name: str, scenario_name: str
     full = TIED.get(full, full)
     if full in known:
         return known[full]
-    near = _nearest(full, known)
+    near = _nearest(full, known) if len(full) <= MOST_LETTERS else []
     hint = f"; nearest: {', '.join(near)}" if near else ""
     raise ConfigError(
-        f"scenario {scenario_name} has no number {name!r}{hint}. A dotted name of its file is meant, "
+        f"scenario {scenario_name} has no number {shown(name)}{hint}. A dotted name of its file is meant, "
         "e.g. wind.speed, cables.nose.length or vehicle.fins.*.area"
     )
 

@@ -6,6 +6,7 @@ from pydantic import Field, model_validator
 
 from tethership.results.limits import LIMITS
 from tethership.scenario.control_schema import ControlConfig
+from tethership.scenario.names import Word, check_apart
 from tethership.scenario.quantity import Angle, Metres, Quantity, Seconds, Speed, Table, Vector
 from tethership.scenario.vehicle_schema import VehicleConfig
 from tethership.scenario.wind_schema import GustConfig, TurbulenceConfig, WindConfig
@@ -62,7 +63,7 @@ class CableConfig(Table):
     `load_reference` is where the airspeed of the cable's wind load is taken: a fraction of the span from the anchor.
     """
 
-    name: str
+    name: Word
     tether_point: Point
     anchor: Point
     length: Metres
@@ -133,8 +134,8 @@ class LimitsConfig(Table):
 class ScenarioConfig(Table):
     """A flight to be trimmed and flown."""
 
-    title: str
-    description: str = ""
+    title: Annotated[str, Field(max_length=200)]
+    description: Annotated[str, Field(max_length=10_000)] = ""
     vehicle: VehicleConfig
     formulation: Literal["consistent", "published"] = "consistent"
     atmosphere: AirConfig = StandardAir()
@@ -153,9 +154,8 @@ class ScenarioConfig(Table):
     def _whole(self) -> "ScenarioConfig":
         if self.trim.position is None and (not self.cables or self.trim.elongation is None):
             raise ValueError("trim needs a position, or a cable and an elongation")
-        names = [cable.name for cable in self.cables]
-        if len(set(names)) != len(names):
-            raise ValueError("two cables have the same name; every name must be its own")
+        parts = (*self.vehicle.fins, *self.vehicle.thrusters, *self.cables)
+        check_apart((part.name for part in parts), "cables, fins or thrusters")
         weakest = min((cable.breaking_force for cable in self.cables), default=None)
         given = self.limits.cable_break
         if weakest is None and given is None:

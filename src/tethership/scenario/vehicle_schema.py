@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from tethership.physics.fins import USUAL_DEFLECTION
 from tethership.physics.hull import gertler_from_shape
+from tethership.scenario.names import Part, check_apart
 from tethership.scenario.quantity import Matrix, Quantity, Table, Vector
 
 Length = Annotated[float, Quantity("m", positive=True, sourced=True)]
@@ -118,7 +119,7 @@ class EnvelopeConfig(Table):
 class FinConfig(Table):
     """One fin; roll angle 0 is starboard, 90° down."""
 
-    name: str
+    name: Part
     roll: Annotated[float, Quantity("rad", sourced=True)]
     area: Annotated[float, Quantity("m^2", positive=True, sourced=True)]
     lift_slope: Annotated[float, Quantity("1/rad", low=0.0, sourced=True)]
@@ -134,7 +135,7 @@ class FinConfig(Table):
 class ThrusterConfig(Table):
     """One thruster."""
 
-    name: str
+    name: Part
     position: Position
     direction: Annotated[Vector, Quantity("1", depth=1, sourced=True)]
     nominal_thrust: Annotated[float, Quantity("N", positive=True, sourced=True)]
@@ -208,8 +209,5 @@ class VehicleConfig(Table):
                 f"envelope.potential_length {self.envelope.potential_length:g} m is beyond the hull's length "
                 f"{self.hull.length:g} m"
             )
-        names = [part.name for part in (*self.fins, *self.thrusters)]
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if twice:
-            raise ValueError(f"two fins or thrusters are named {twice[0]!r}; every name must be its own")
+        check_apart((part.name for part in (*self.fins, *self.thrusters)), "fins or thrusters")
         return self
