@@ -54,7 +54,7 @@ def test_its_slope_is_continuous_and_that_of_its_ends_whole():
 
 @pytest.mark.parametrize("step", [0.5, 0.25, 0.125])
 def test_a_smooth_wind_is_met_better_than_by_backward_differences(step):
-    """Measured, root mean square of (rising) values and slopes over those of version 0.1: 0.3–0.6, 0.2–0.4."""
+    """Measured, root mean squares over those of version 0.1: 0.2–0.4 of values, 0.2–0.3 of slopes."""
     times = np.arange(0.0, 20.0 + step / 2, step)
     times[1:-1] += np.random.default_rng(1).uniform(-0.3, 0.3, times.size - 2) * step
     wind = lambda t: 8.0 + 1.5 * np.sin(t) + 0.3 * np.cos(2.3 * t)  # noqa: E731
@@ -67,8 +67,8 @@ def test_a_smooth_wind_is_met_better_than_by_backward_differences(step):
     values, slopes = flown(times, samples, at)
     rms = lambda difference: float(np.sqrt(np.mean(np.square(difference))))  # noqa: E731
     old_values, old_slopes = (jax.vmap(of)(jnp.asarray(at))[:, 0] for of in (old.evaluate, old.derivative))
-    assert rms(values[:, 0] - wind(at)) < 0.7 * rms(old_values - wind(at))
-    assert rms(slopes[:, 0] - rate(at)) < 0.5 * rms(old_slopes - rate(at))
+    assert rms(values[:, 0] - wind(at)) < 0.5 * rms(old_values - wind(at))
+    assert rms(slopes[:, 0] - rate(at)) < 0.4 * rms(old_slopes - rate(at))
 
 
 def test_it_has_finite_derivatives_by_its_samples_even_where_they_are_equal():
