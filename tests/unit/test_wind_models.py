@@ -119,7 +119,8 @@ def test_a_measured_wind_is_met_at_its_samples(measured):
     assert np.allclose(np.array(wind)[:, :2], np.stack([north, east], axis=1), atol=1e-12)
     late = scenario.system.environment.wind_at(jnp.zeros(3), jnp.asarray(500.0))
     assert np.allclose(late, wind[-1])
-    assert scenario.config.wind.speed == pytest.approx(np.hypot(north.mean(), east.mean()))
+    over_time = [np.trapezoid(component, times) / times[-1] for component in (north, east)]
+    assert scenario.config.wind.speed == pytest.approx(np.hypot(*over_time))
 
 
 def test_a_measured_wind_from_netcdf(measured, tmp_path):
@@ -148,9 +149,9 @@ def test_a_flight_in_a_measured_wind_can_be_flown_again_without_the_file(measure
     ("content", "said"),
     [
         ("time,speed\n0,1\n1,2\n", "wanted: time with north, east"),
-        ("time,north,east\n0,1,1\n1,,2\n2,1,1\n3,1,1\n", "sample 2 has a number missing"),
+        ("time,north,east\n0,1,1\n1,,2\n2,1,1\n3,1,1\n", "3 samples beside 1 that are missing"),
         ("time,north,east\n0,1,1\n2,1,2\n1,1,1\n3,1,1\n", "times must rise"),
-        ("time,north,east\n0,1,1\n2,1,2\n", "n at least 4"),
+        ("time,north,east\n0,1,1\n2,1,2\n", "at least 4"),
     ],
 )
 def test_a_measured_wind_that_is_none_is_refused(measured, content, said):
@@ -206,3 +207,50 @@ def test_a_wind_file_may_be_a_change_and_its_end_is_told(tmp_path, monkeypatch):
     assert record_warning(scenario.config.wind, 4.0) is None
     assert "ends at 4 s and the flight at 60 s" in record_warning(scenario.config.wind, 60.0)
     assert record_warning(ts.load_scenario("docking").config.wind, 60.0) is None
+
+
+def test_remarks_and_height_travel_with_the_scenario_and_its_flight(measured, tmp_path):
+    path = measured("time,ws12m,wd12m,battery\n" + "\n".join(f"{t},{6 if t % 9 else -999},0,12" for t in range(1, 90)))
+    scenario = ts.load_scenario(path)
+    assert scenario.remarks == (
+        "mast.csv: not used: battery",
+        "mast.csv: 9 of 89 samples are missing, sample 9 the first",
+        "mast.csv: 9 gaps of up to 2 s bridged; a usual step is 1 s",
+    )
+    assert scenario.config.wind.height == 12.0
+    flight = ts.dock(scenario, ts.trim(scenario), layers=())
+    flight.save(tmp_path / "flight.nc")
+    again, _ = ts.fly_again(tmp_path / "flight.nc")
+    assert again.remarks == scenario.remarks
+    assert ts.load_scenario("docking").remarks == ()
+
+
+def test_a_height_is_chosen_beside_the_file_or_by_a_change(measured, tmp_path):
+    path = measured("time,ws10m,wd10m,ws40m,wd40m\n" + "\n".join(f"{t},6,0,9,0" for t in range(80)))
+    with pytest.raises(ConfigError, match=r"several heights \(10, 40 m\)"):
+        ts.load_scenario(path)
+    assert ts.load_scenario(path, {"wind.height": 40.0}).config.wind.speed == pytest.approx(9.0)
+    text = (tmp_path / "own.toml").read_text()
+    beside = text.replace('"mast.csv"', '"mast.csv"\nheight = { value = 10.0, unit = "m" }')
+    (tmp_path / "own.toml").write_text(beside)
+    assert ts.load_scenario(path).config.wind.speed == pytest.approx(6.0)
+    (tmp_path / "own.toml").write_text(beside.replace('"m" }\n\n[[gusts', '"kg" }\n\n[[gusts'))
+    with pytest.raises(ConfigError, match=r"own.toml: wind.height: .*'kg'"):
+        ts.load_scenario(path)
+    changes = {"wind.file": str(tmp_path / "mast.csv"), "wind.height": {"value": 4000.0, "unit": "cm"}}
+    assert ts.load_scenario("docking", changes).config.wind.height == pytest.approx(40.0)
+
+
+def test_the_mean_of_a_record_cannot_be_set(measured):
+    scenario = ts.load_scenario(measured("time,north,east\n" + "\n".join(f"{t},-6,0" for t in range(5))))
+    with pytest.raises(ConfigError, match="12 m/s from 0 deg is not the measured mean, 6 m/s from 0 deg; leave it out"):
+        scenario.changed({"wind.speed": 12.0})
+
+
+@pytest.mark.parametrize("name", ["17", "[1]", "true"])
+def test_a_wind_file_has_a_name(measured, tmp_path, name):
+    path = measured("time,north,east\n0,1,1\n")
+    text = (tmp_path / "own.toml").read_text()
+    (tmp_path / "own.toml").write_text(text.replace('file = "mast.csv"', f"file = {name}"))
+    with pytest.raises(ConfigError, match=r"wind\.file is .*; give the name of a file in quotes"):
+        ts.load_scenario(path)

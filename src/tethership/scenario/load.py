@@ -59,6 +59,11 @@ class Scenario:
         """Control layers besides SAS/attitude."""
         return self.config.control.layers
 
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What reading a measured wind left out, bridged or guessed, a line each."""
+        return getattr(self.config.wind, "remarks", ())
+
     def law(self, layers: Iterable[str] | None = None, sas: bool | None = None) -> LayeredLaw:
         """Return the layered law.
 

@@ -1,21 +1,16 @@
-"""Reading a measured wind history from a CSV or netCDF file. Depends on: pandas, xarray, errors.
-
-Columns (or variables) are `time` [s] and either `north`, `east` and, if measured, `down` [m/s], the velocity of the
-air, or `speed` [m/s] and `direction` [deg], that from which it comes, clockwise from north, as stations give it.
-"""
+"""A measured wind of a scenario: its file becomes samples, with what is to be said of it. Depends on: wind_record."""
 
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
-import xarray as xr
+from pydantic import TypeAdapter, ValidationError
 
 from tethership.errors import ConfigError
 from tethership.scenario.changes import Document
-
-COLUMNS = "time with north, east (and down) in m/s, or time with speed in m/s and direction in deg"
-"""What a file must have."""
+from tethership.scenario.messages import first_problem
+from tethership.scenario.quantity import Metres
+from tethership.scenario.wind_record import read_record
 
 
 def expand_wind_file(document: Document, base: Path | None, origin: str) -> None:
@@ -33,41 +28,55 @@ def expand_wind_file(document: Document, base: Path | None, origin: str) -> None
     Raises
     ------
     ConfigError
-        The file cannot be read, lacks a column, or has a number that is none.
+        As `read_record`, or something stands beside `file` that is read from it.
     """
     wind = document.get("wind")
     if not isinstance(wind, dict) or wind.get("model") != "measured" or "file" not in wind:
         return
-    extra = sorted(set(wind) - {"model", "file"})
+    extra = sorted(set(wind) - {"model", "file", "height"})
     if extra:
         raise ConfigError(f"{origin}: wind.{extra[0]} is read from wind.file; take it out")
-    given = Path(str(wind["file"]))
-    path = given if base is None or given.is_absolute() else base / given
-    times, velocities = read_wind(path)
-    north, east, _ = velocities.mean(axis=0)
+    if not isinstance(wind["file"], str):
+        raise ConfigError(f"{origin}: wind.file is {wind['file']!r}; give the name of a file in quotes")
+    try:
+        height = TypeAdapter(Metres).validate_python(wind["height"]) if "height" in wind else None
+    except ValidationError as error:
+        raise ConfigError(first_problem(error, f"{origin}: wind.height", wind["height"])) from error
+    given = Path(wind["file"])
+    record = read_record(given if base is None or given.is_absolute() else base / given, height)
+    north, east, _ = record.mean
     document["wind"] = {
         "model": "measured",
         "speed": {"value": float(np.hypot(north, east)), "unit": "m/s"},
         "from_direction": {"value": float(np.arctan2(-east, -north)), "unit": "rad"},
-        "times": {"value": times.tolist(), "unit": "s"},
-        "velocities": {"value": velocities.tolist(), "unit": "m/s"},
+        "times": {"value": record.times.tolist(), "unit": "s"},
+        "velocities": {"value": record.velocities.tolist(), "unit": "m/s"},
+        "remarks": list(record.remarks),
     }
+    if record.height is not None:
+        document["wind"]["height"] = {"value": record.height, "unit": "m"}
 
 
 def take_wind_file(document: Document, changes: Document) -> Document:
-    """Put a change of `wind.file` into a document, its path counted from here; returns the other changes.
+    """Put changes of `wind.file` and `wind.height` into a document; returns the other changes.
 
     Parameters
     ----------
     document : dict
-        Of a scenario, changed in place: its wind becomes the measured one.
+        Of a scenario, changed in place: with a file, counted from here, its wind becomes the measured one.
     changes : dict
         Dotted name → value.
     """
-    if "wind.file" not in changes:
-        return changes
-    document["wind"] = {"model": "measured", "file": str(Path(str(changes["wind.file"])).absolute())}
-    return {name: value for name, value in changes.items() if name not in ("wind.file", "wind.model")}
+    taken = set()
+    if "wind.file" in changes:
+        document["wind"] = {"model": "measured", "file": str(Path(str(changes["wind.file"])).absolute())}
+        taken = {"wind.file", "wind.model"}
+    wind = document.get("wind")
+    if "wind.height" in changes and isinstance(wind, dict) and "file" in wind:
+        height = changes["wind.height"]
+        wind["height"] = {"value": height, "unit": "m"} if isinstance(height, int | float) else height
+        taken |= {"wind.height"}
+    return {name: value for name, value in changes.items() if name not in taken}
 
 
 def record_warning(wind: Any, duration: float) -> str | None:
@@ -86,35 +95,3 @@ def record_warning(wind: Any, duration: float) -> str | None:
         f"the measured wind ends at {float(wind.times[-1]):g} s and the flight at {duration:.4g} s: its last value was "
         "held from there on; give a longer record"
     )
-
-
-def read_wind(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Return times from the first sample on [s] and wind velocities [m/s], ground axes, shape (n, 3)."""
-    columns = _columns(path)
-    lower = {name.strip().lower(): values for name, values in columns.items()}
-    if "time" in lower and {"north", "east"} <= set(lower):
-        parts = [lower["north"], lower["east"], lower.get("down", np.zeros(len(lower["north"])))]
-    elif {"time", "speed", "direction"} <= set(lower):
-        angle = np.radians(lower["direction"])
-        parts = [-lower["speed"] * np.cos(angle), -lower["speed"] * np.sin(angle), np.zeros(len(angle))]
-    else:
-        raise ConfigError(f"{path} has {', '.join(columns) or 'nothing'}; wanted: {COLUMNS}")
-    velocities = np.stack(parts, axis=-1)
-    whole = np.isfinite(lower["time"]) & np.all(np.isfinite(velocities), axis=1)
-    if not np.all(whole):
-        raise ConfigError(f"{path}: sample {int(np.argmin(whole)) + 1} has a number missing; fill the gap")
-    return lower["time"] - lower["time"][0], velocities
-
-
-def _columns(path: Path) -> dict[str, np.ndarray]:
-    """Return the columns of a file by name."""
-    try:
-        if path.suffix == ".csv":
-            frame = pd.read_csv(path, comment="#")
-            return {str(name): np.asarray(pd.to_numeric(frame[name], errors="coerce"), float) for name in frame}
-        if path.suffix in (".nc", ".nc4", ".h5"):
-            with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as data:
-                return {str(name): np.asarray(data[name], float) for name in data.variables if data[name].ndim == 1}
-    except (OSError, ValueError) as error:
-        raise ConfigError(f"cannot read the wind of {path}: {error}") from error
-    raise ConfigError(f"{path}: a measured wind is a .csv or .nc file with {COLUMNS}")

@@ -49,14 +49,17 @@ class MeasuredWindConfig(Table):
     """A measured history, the same everywhere; in a file it is given as `file`, a CSV or netCDF.
 
     `times` and `velocities` (north, east, down) are what was read; `speed` and `from_direction` are those of its mean
-    and are not to be given by hand.
+    over time and are not to be given by hand. `height` stands beside `file` where that has several heights; `remarks`
+    are what reading it left out, bridged or guessed.
     """
 
     model: Literal["measured"]
     speed: Speed
     from_direction: Angle
+    height: Metres | None = None
     times: Annotated[np.ndarray, Quantity("s", depth=1, array=True)]
     velocities: Annotated[np.ndarray, Quantity("m/s", depth=2, array=True)]
+    remarks: tuple[str, ...] = ()
 
     @model_validator(mode="after")
     def _samples(self) -> "MeasuredWindConfig":
@@ -66,6 +69,19 @@ class MeasuredWindConfig(Table):
             )
         if np.any(np.diff(self.times) <= 0):
             raise ValueError(f"times must rise; sample {int(np.argmax(np.diff(self.times) <= 0)) + 1} does not")
+        return self
+
+    @model_validator(mode="after")
+    def _own_mean(self) -> "MeasuredWindConfig":
+        level, duration = self.velocities[:, :2], self.times[-1] - self.times[0]
+        mean = np.trapezoid(level, self.times, axis=0) / duration
+        given = -self.speed * np.array([np.cos(self.from_direction), np.sin(self.from_direction)])
+        older = level.mean(axis=0)  # flights stored by 0.1
+        if not any(np.allclose(given, known, rtol=0.0, atol=1e-6) for known in (mean, older)):
+            come, measured = (
+                f"{np.hypot(*v):g} m/s from {np.degrees(np.arctan2(*-v[::-1])) % 360:.4g} deg" for v in (given, mean)
+            )
+            raise ValueError(f"{come} is not the measured mean, {measured}; leave it out, or take a uniform wind")
         return self
 
 
