@@ -160,6 +160,7 @@ def summary(found: "Sweep") -> dict[str, Any]:
         },
         "events": [event for event in events if event["kind"] in MEETINGS],
         "stability": [event for event in events if event["kind"] not in MEETINGS],
+        "unstable_throughout": list(found.unstable_throughout),
         "outcome": [outcome.name for outcome in found.outcomes],
         "throttle": found.throttle,
         "tension": found.tension,
@@ -266,6 +267,9 @@ def _print(result: dict[str, Any], found: list["Sweep"]) -> None:
                 if outcome.name == "no_equilibrium":
                     lacks = f"{np.abs(residual).max():.3g} N or N m left over"
                 typer.echo(f"  {value:<10.4g} {outcome.name}: {lacks}")
+        for name in one.unstable_throughout:
+            growth = one.track(name)[one.trimmed].real
+            typer.echo(f"  {name} unstable at every point (Re λ {growth.min():.3g} … {growth.max():.3g} 1/s)")
         for event in one.events:
             place = ", ".join(f"{name} = {value:.4g}" for name, value in event.at.items())
             verb = {"unstable": "becomes unstable", "stable": "becomes stable"}.get(event.kind, event.kind)
