@@ -1,4 +1,4 @@
-"""Where in a flight the quasi-static cable may be trusted. Depends on: simulation.flight, scenario.
+"""Where in a flight the quasi-static cable may be trusted. Depends on: simulation, scenario.
 
 A cable follows its ends quasi-statically while they are slow against its own motion, of which the first transverse mode
 is the slowest: ω₁ = (π/L)√(T/m), a taut string's. The pace of the tension against it is
@@ -22,19 +22,8 @@ from numpy.typing import NDArray
 
 from tethership.scenario import ScenarioConfig
 from tethership.scenario.load import validated
+from tethership.simulation.cable_pace import LEAST_MASS, LEAST_TENSION, MEMORY, SLACK, TRUSTED, first_mode
 from tethership.simulation.flight import Flight
-
-TRUSTED = 0.3
-"""Largest pace κ at which the quasi-static tension may be trusted [-]."""
-
-MEMORY = 3.0
-"""Time for which a hurried cable swings on [s]: air damps it at ½ ρ D C_dc |v|/m, 0.5 1/s in 6 m/s."""
-
-SLACK = 0.99
-"""Elongation below which a cable was slack before a snap [-]."""
-
-LEAST_TENSION = 5.0
-"""Tension below which a change counts as if it were of this [N]: a slack cable's newtons move nothing."""
 
 TOLD = 0.01
 """Share of a flight outside the trusted range from which it is told [-]."""
@@ -50,7 +39,7 @@ def tension_pace(flight: Flight) -> NDArray[np.float64]:
     if len(time) < 2 or not len(mass):
         return np.zeros(tension.shape)
     floor = np.maximum(tension, LEAST_TENSION)
-    mode = np.pi / data["cable_length"].to_numpy() * np.sqrt(floor / np.maximum(mass, 1e-6))
+    mode = first_mode(floor, data["cable_length"].to_numpy(), np.maximum(mass, LEAST_MASS))
     return np.abs(np.gradient(tension, time, axis=0)) / floor / mode
 
 
