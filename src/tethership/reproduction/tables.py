@@ -87,7 +87,7 @@ def held_out() -> frozenset[FlightKey]:
 
 def _named(row: Row) -> dict[str, float]:
     """Return a row's numbers by the names of the tables' columns."""
-    values = {name: value for name, value in row.values.items() if not isinstance(value, list)}
+    values: dict[str, float] = {name: value for name, value in row.values.items() if not isinstance(value, list)}
     times = row.values["seconds_above"]
     assert isinstance(times, list)
     return values | {f"seconds_above {limit}": value for limit, value in zip(THRESHOLDS, times, strict=True)}
