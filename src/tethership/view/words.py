@@ -24,7 +24,7 @@ def percent(share: float | None) -> str:
     Examples
     --------
     >>> percent(0.0471), percent(0.99958), percent(1.0), percent(None)
-    ('4.71 %', '99.958 %', '100 %', '–')
+    ('4.71 %', '99.9580 %', '100 %', '–')
     """
     if share is None or not math.isfinite(share):
         return "–"
