@@ -37,7 +37,8 @@ def tables(study: dict[str, Any]) -> str:
             of = intervals[row["layers"], row["wind"], row["metric"]]
             span = f"{number(of['low'])} … {number(of['high'])}"
             what = row["metric"] if name != "table6" else f"{row['metric']}, {row['layers']}"
-            cells.append([what, row["wind"], row["published"], row["computed"], row["ratio"], span, row["verdict"]])
+            said = row["verdict"] + (", held out" if row["held_out"] else "")
+            cells.append([what, row["wind"], row["published"], row["computed"], row["ratio"], span, said])
         heads = ["quantity", "wind [m/s]", "published", "computed", "ratio", "5–95 % of the set", "verdict"]
         parts.append(f"### Table {name[5:]}\n\n{table(heads, cells)}")
     return "\n\n".join(parts)
@@ -71,19 +72,29 @@ def fit_words(fit: dict[str, Any]) -> str:
     )
 
 
-def misses(study: dict[str, Any]) -> str:
-    """Return in words which numbers differ."""
-    rows = [row for table in study["tables"].values() for row in table if row["verdict"] == "differs"]
-    named = [f"{r['metric']} with {r['layers']} at {r['wind']:g} m/s ({r['ratio']:.2f} ×)" for r in rows]
-    unique = list(dict.fromkeys(named))
-    return f"What differs by more than a factor 1.5: {'; '.join(unique)}." if unique else "Nothing differs."
+def verdicts(study: dict[str, Any], held_out: bool) -> str:
+    """Return in words how the numbers of the fitted rows, or of those held out, compare, and which differ.
+
+    Zeros in print and set rates of the winch agree without saying much, and are counted apart.
+    """
+    rows = [row for table in study["tables"].values() for row in table if row["held_out"] == held_out]
+    met = [row for row in rows if row["verdict"] == "agrees"]
+    few = sum(row["published"] == 0 or row["metric"] == "rewind_rate_min" for row in met)
+    near = sum(row["verdict"] == "near" for row in rows)
+    missed = [row for row in rows if row["verdict"] == "differs"]
+    named = [f"{r['metric']} with {r['layers']} at {r['wind']:g} m/s ({apart(r)})" for r in missed]
+    return (
+        f"Of {len(rows)} numbers {len(met)} agree, {near} are near and {len(missed)} differ. Of the {len(met)} that "
+        f"agree {few} say little: zeros in print, or a slowest rewind rate. What differs: "
+        f"{'; '.join(named) or 'nothing'}."
+    )
 
 
-def bare(study: dict[str, Any]) -> str:
-    """Return in words how many of the numbers that agree say little: zeros in print, and set rates of the winch."""
-    rows = [row for table in study["tables"].values() for row in table if row["verdict"] == "agrees"]
-    few = sum(row["published"] == 0 or row["metric"] == "rewind_rate_min" for row in rows)
-    return f"Of the {len(rows)} that agree {few} say little: zeros in print, or a slowest rewind rate."
+def apart(row: dict[str, Any]) -> str:
+    """Return how far a computed number is from the published one: a factor, or both where one is zero or missing."""
+    if row["ratio"]:
+        return f"{row['ratio']:.2f} ×"
+    return f"{number(row['computed'])} in place of {number(row['published'])}"
 
 
 def lines(study: dict[str, Any]) -> str:
@@ -103,13 +114,15 @@ def misprints() -> str:
 def main(folder: Path) -> None:
     """Write the page."""
     study = json.loads((folder / "tables.json").read_text(encoding="utf-8"))
+    if study["partial"]:
+        sys.exit(f"{folder} holds a partial study, without {', '.join(study['left_out'])}; run `tethership reproduce`")
     text = (HERE / "docking.in.md").read_text(encoding="utf-8")
     fills = {
         "formulation": study["formulation"],
-        "counts": ", ".join(f"{value} {key.replace('_', ' ')}" for key, value in study["counts"].items()),
+        "claims_counted": f"{study['counts']['holds']} of {len(study['claims'])}",
         "fit": fit_words(stored_fit(study["formulation"])),
-        "misses": misses(study),
-        "bare": bare(study),
+        "fitted": verdicts(study, held_out=False),
+        "held_out": verdicts(study, held_out=True),
         "tables": tables(study),
         "claims": claims(study),
         "variants": variants(study),

@@ -186,6 +186,19 @@ def test_sweep_of_a_grid(run, tmp_path):
     assert all(len(values) == 4 for values in result["tracks"].values())
 
 
+def test_sweep_names_what_is_unstable_at_every_point(run, tmp_path):
+    """No event tells of a mode that is unstable from end to end: it is said by itself, in text and JSON."""
+    over = ("sweep", "--over", "wind=6:9:2", "--out", tmp_path)
+    found = json.loads(run(*over, "--json")[1])
+    always = found["unstable_throughout"]
+    assert always
+    assert all((name in always) == all(root[0] > 1e-6 for root in roots) for name, roots in found["tracks"].items())
+    said = run(*over)[1]
+    for name in always:
+        low, high = sorted(root[0] for root in found["tracks"][name])
+        assert f"{name} unstable at every point (Re λ {low:.3g} … {high:.3g} 1/s)" in said
+
+
 def test_sweep_with_changes(run, tmp_path):
     # the flags change what is swept: a point of the sweep at 9 m/s is the trim of `modes --wind 9`
     code, out, _ = run("sweep", "--over", "wind=[9]", "--wind", 7, "--json", "--out", tmp_path)

@@ -35,9 +35,33 @@ def test_reproduce(study):
     assert all(isinstance(claim["holds"], bool) and claim["numbers"] for claim in found["claims"].values())
     assert found["counts"]["holds"] + found["counts"]["does_not_hold"] == 11
     assert found["counts"]["agrees"] >= 40
+    predicted = found["counts"]["held_out"]
+    assert sum(predicted.values()) == found["counts"]["prediction"] == 33
+    held = [row for rows in found["tables"].values() for row in rows if row["held_out"]]
+    assert {row["wind"] for row in held} == {9.0}
+    assert next(row["published"] for row in held if row["metric"] == "tension_max") == 1555
     assert json.loads((folder / "tables.json").read_text())["tables"] == found["tables"]
     for name in ("report.html", "figures/figure_14.png", "figures/figure_14.html", "figures/figure_15.png"):
         assert (folder / name).stat().st_size > 10_000, name
+
+
+def test_a_partial_report_says_so_and_keeps_what_stands(study):
+    """Of a folder with more only one part is asked for: report and JSON keep the tables, and say what they lack."""
+    folder, only, found = study
+    assert found["partial"] is True
+    assert {"terms", "variants", "uncertainty"} <= set(found["left_out"])
+    assert "tables and claims D1-D11" not in found["left_out"]
+    drawn = (folder / "report.html").read_text()
+    assert "(partial report)</h1>" in drawn
+    assert "This report is partial." in drawn
+    said = run("reproduce", "--only", only, "--out", str(folder)).stdout
+    assert "partial: without" in said
+    assert "leave out --only" in said
+    told = json.loads(run("reproduce", "--only", "identification", "--json", "--out", str(folder)).stdout)
+    assert told["computed_anew"] == []
+    for kept in (told, json.loads((folder / "tables.json").read_text())):
+        assert kept["tables"] == found["tables"]
+        assert kept["claims"] == found["claims"]
 
 
 def test_second_run_reuses_what_is_unchanged(study):

@@ -9,6 +9,7 @@ import sys
 import pytest
 
 from tethership.cli.tables import Row, print_table, write_rows
+from tethership.scenario.load import packaged_text
 from tethership.scenario.quantity import NUMBER_WITH_UNIT
 
 COMMAND = [sys.executable, "-m", "tethership"]
@@ -86,6 +87,19 @@ def test_a_place_that_cannot_be_is_refused():
 def test_lists(tmp_path):
     told = json.loads(run("list", "parameters", "--scenario", "docking_paper", "--json").stdout)["parameters"]
     assert told["wind.speed"]["unit"] == "m/s"
+    assert json.loads(run("list", "parameters", "docking_paper", "--json").stdout)["parameters"] == told
+    (tmp_path / "mine.toml").write_text(packaged_text("scenarios", "hover"), encoding="utf-8")
+    mine = json.loads(run("list", "parameters", tmp_path / "mine.toml", "--json").stdout)["parameters"]
+    assert "vehicle.body.mass" in mine
+    assert not any(name.startswith("cables") for name in mine)
+    for given, message in (
+        (("scenarios", "hover"), "only parameters are a scenario's; write tethership list parameters hover"),
+        (("parameters", "hover", "--scenario", "docking"), "two scenarios are named, hover and --scenario docking"),
+        (("parameters", "hovr"), "did you mean 'hover'?"),
+    ):
+        refused = run("list", *given)
+        assert (refused.returncode, refused.stdout) == (2, "")
+        assert message in refused.stderr
     assert run("list", "outputs", "--csv", tmp_path / "o.csv").returncode == 0
     (tension,) = [row for row in read(tmp_path / "o.csv") if row["name"] == "tension"]
     assert (tension["unit"], tension["dims"]) == ("N", "time × cable")

@@ -127,10 +127,10 @@ PRINTED = {(row.table, row.wind): row.values for row in published_rows()}
 
 
 def as_printed(**other):
-    """Return flights with the printed peaks, times, rewind rates, θ_rms, E and ADC; at 9 m/s those of 6 m/s again."""
+    """Return flights with the printed peaks, times, rewind rates, θ_rms, E and ADC."""
     found = {}
     for table, wind in KEYS:
-        value = PRINTED[table, 12.0 if wind == 12.0 else 6.0]
+        value = PRINTED[table, wind]
         time = value["docking_time"]
         facts = {
             "tops": ((30.0, value["tension_max"]),),
@@ -168,6 +168,9 @@ def test_tables_3_to_5(claim, table):
     assert failing(spoiled) == ["every number agrees or is near at 6 m/s"]
     spoiled = claim(as_printed(), verdicts_like(**{f"{table}_12_tension_mean": "differs"}))
     assert failing(spoiled) == ["mean tension agrees or is near at 12 m/s", "every number agrees or is near at 12 m/s"]
+    # What was held out of the fit is judged like the rest.
+    spoiled = claim(as_printed(), verdicts_like(**{f"{table}_9_tension_max": "differs"}))
+    assert failing(spoiled) == ["peak tension agrees or is near at 9 m/s", "every number agrees or is near at 9 m/s"]
     # A verdict of Table 6 is none of Tables 3-5.
     assert claim(as_printed(), verdicts_like(**{f"{table}_12_ADC": "differs"})).holds
     # Without any row nothing is met.
@@ -187,7 +190,7 @@ def test_table_3_text():
 
 
 def test_table_4_text():
-    worse = as_printed(heading_9={"tops": ((30.0, 1500.0),)})  # rewind: 283 N
+    worse = as_printed(heading_9={"tops": ((30.0, 1600.0),)})  # rewind: 1555 N
     found = failing(claim_2(worse, verdicts_like()))
     assert found == ["every index is better than with rewind alone, or as good, at 9 m/s"]
     found = failing(claim_2(as_printed(heading_12={"tops": ((30.0, 400.0),)}), verdicts_like()))

@@ -1,6 +1,8 @@
 """Fitting: the box, the search on functions with known answers, residuals, files."""
 
 import json
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +15,7 @@ from tethership.fitting.misfit import FAILED, fly_rows, items, residuals
 from tethership.fitting.scenario_file import retuned_text
 from tethership.fitting.search import NEARLY, Archive, Slopes, evolve, misfit, refine, sobol, spread
 from tethership.fitting.space import UNKNOWNS, named_values, to_shares, to_values
-from tethership.fitting.targets import published_rows
+from tethership.fitting.targets import fitted_rows, published_rows
 from tethership.fitting.vehicle_file import vehicle_text
 from tethership.scenario import list_parameters
 from tethership.scenario.load import packaged_text
@@ -94,9 +96,28 @@ def as_published(rows, factor=1.0):
     return flown
 
 
+def test_what_is_held_out_cannot_be_fitted(docking):
+    """The fit's loader has no row at 9 m/s; given one, every way into a fit refuses it, before anything is flown."""
+    held = [row for row in published_rows() if row.held_out]
+    assert {(row.table, row.wind) for row in held} == {(table, 9.0) for table in ("rewind", "heading", "navigation")}
+    assert not any(row.held_out for row in fitted_rows())
+    mixed = [*fitted_rows(), held[0]]
+    values = to_values(np.full((1, len(UNKNOWNS)), 0.5))
+    for way in (fitted_rows, items, lambda rows: fly_rows(docking, values, rows)):
+        with pytest.raises(ts.ConfigError, match=r"held out, not to be fitted: rewind at 9 m/s; .*leave them out"):
+            way(mixed)
+
+
+def test_nothing_that_fits_reads_past_its_loader():
+    """In `fitting`, only the loader itself has the rows that are held out, or the file that they are in."""
+    folder = Path(ts.__file__).parent / "fitting"
+    known = [path.name for path in folder.glob("*.py") if re.search("published_rows|data/paper", path.read_text())]
+    assert known == ["targets.py"]
+
+
 def test_residuals():
     """Zero for the paper's own numbers, ln of the factor over the tolerance, five tolerances for a failed flight."""
-    rows = published_rows()
+    rows = fitted_rows()
     what = items(rows)
     assert {(row.table, row.wind) for row in rows} == {
         (table, wind) for table in ("rewind", "heading", "navigation") for wind in (6.0, 12.0)
@@ -113,7 +134,7 @@ def test_residuals():
 
 def test_chaos_widens_tolerances(monkeypatch, docking):
     """A number that moves by 30 % under 1 % of attitude is fitted with a tolerance above that."""
-    rows = published_rows()
+    rows = fitted_rows()
     what = items(rows)
 
     def flown(scenario, values, rows, more=None):
@@ -131,7 +152,7 @@ def test_chaos_widens_tolerances(monkeypatch, docking):
 
 def test_left_out_table_is_not_seen(docking):
     """A fit without a table asks for none of its rows, and starts from residuals without its columns."""
-    rows = published_rows()
+    rows = fitted_rows()
     what = items(rows)
     asked = []
 
@@ -243,7 +264,7 @@ def test_packaged_fit(formulation):
     known = list_parameters(scenario.config)
     for name, value in named_values(values).items():
         assert known[name].value == pytest.approx(float(value), rel=1e-5)
-    rows = published_rows()
+    rows = fitted_rows()
     what = tuple(
         item._replace(tolerance=entry["tolerance"]) for item, entry in zip(items(rows), fit["items"], strict=True)
     )

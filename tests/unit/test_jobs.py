@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tethership.reproduction.jobs import Job, Settings, load_part, plain, run_jobs
+from tethership.reproduction.jobs import Job, Settings, belongs, load_part, plain, run_jobs
 
 MODULE = """
 import time
@@ -96,3 +96,14 @@ def test_plain_data():
 
     value = plain({"a": np.array([1.0, np.nan]), 2: (np.float64(3.0), None, 1 + 2j), "t": np.bool_(True)})
     assert json.loads(json.dumps(value)) == {"a": [1.0, None], "2": [3.0, None, [1.0, 2.0]], "t": True}
+
+
+def test_parts_of_one_study_belong_together(jobs, tmp_path, monkeypatch):
+    """A part made with another seed belongs to the study still; of another formulation or by other code it does not."""
+    folder = tmp_path / "out"
+    run_jobs(jobs, folder, Settings("published", seed=2))
+    assert belongs(folder, "second", Settings("published", seed=7))
+    assert not belongs(folder, "second", Settings("consistent", seed=2))
+    assert not belongs(folder, "third", Settings("published", seed=2))
+    monkeypatch.setattr("tethership.reproduction.jobs.source_digest", lambda: "other code")
+    assert not belongs(folder, "second", Settings("published", seed=2))

@@ -3,6 +3,7 @@
 import time
 
 from tethership.cli import progress
+from tethership.cli.campaign import _counted
 from tethership.cli.progress import progress_bar
 
 
@@ -18,3 +19,33 @@ def test_short_work_is_quiet_and_long_work_says_how_far_it_is(capsys, monkeypatc
             report("evolution", 0.25)
     lines = capsys.readouterr().err.splitlines()
     assert lines == ["fit: 25 %, evolution, 30 s, 90 s left", "fit: 25 %, evolution, 60 s, 180 s left"]
+
+
+def test_work_gone_on_with_is_judged_by_what_this_run_does(capsys, monkeypatch):
+    """900 of 1000 flights stood; this run flew 10 in a minute, then 60 in another: 30 s are left."""
+    now = [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    with progress_bar("campaign", resumed=True) as report:
+        count = _counted(report)
+        for after, done in ((0.0, 900), (60.0, 910), (60.0, 970)):
+            now[0] += after
+            count(done, 1000)
+    lines = capsys.readouterr().err.splitlines()
+    assert lines == [
+        "campaign: 91 %, 910 of 1000 flights, 0.167/s, 60 s, 540 s left",
+        "campaign: 97 %, 970 of 1000 flights, 1/s, 120 s, 30 s left",
+    ]
+
+
+def test_where_nothing_moves_no_time_is_promised(capsys, monkeypatch):
+    """After a minute without progress the last pace says nothing of what is left."""
+    now = [0.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    with progress_bar("fit") as report:
+        for after in (10.0, 40.0, 70.0):
+            now[0] += after
+            report("evolution", 0.5)
+    assert capsys.readouterr().err.splitlines() == [
+        "fit: 50 %, evolution, 50 s, 50 s left",
+        "fit: 50 %, evolution, 120 s",
+    ]

@@ -1,9 +1,17 @@
-"""Tables 3–6: verdicts at their edges, rows of a flight, predictions, the paper's own split."""
+"""Tables 3–6: verdicts at their edges, rows of a flight, what is held out of the fit, the paper's own split."""
 
 import numpy as np
 import pytest
 
-from tethership.reproduction.tables import compare, computed_numbers, counts, paper_tables, published_numbers, verdict
+from tethership.reproduction.tables import (
+    compare,
+    computed_numbers,
+    counts,
+    held_out,
+    paper_tables,
+    published_numbers,
+    verdict,
+)
 
 
 @pytest.mark.parametrize(
@@ -32,9 +40,13 @@ def test_verdict(metric, published, computed, expected):
 
 
 def test_published_numbers_are_the_papers():
-    """Six flights at 6 and 12 m/s, none at 9; spot checks against Tables 3 to 6."""
+    """Nine flights, those at 9 m/s held out of the fit; spot checks against Tables 3 to 6."""
     found = published_numbers()
-    assert {wind for _, wind in found} == {6.0, 12.0}
+    assert {wind for _, wind in found} == {6.0, 9.0, 12.0}
+    assert held_out() == {(table, 9.0) for table in ("rewind", "heading", "navigation")}
+    assert found["rewind", 9.0]["tension_max"] == 1555
+    assert found["heading", 9.0]["seconds_above 144.3 N"] == 0.5
+    assert found["navigation", 9.0]["theta_rms"] == 4.97
     assert found["rewind", 12.0]["tension_max"] == 2357
     assert found["rewind", 12.0]["seconds_above 2354 N"] == 0.03
     assert found["navigation", 6.0]["E"] == 0.21
@@ -42,21 +54,24 @@ def test_published_numbers_are_the_papers():
 
 
 def test_rows_of_flights(flight):
-    """A flight at 6 m/s has a verdict for each number, at 9 m/s only predictions; the split loses no row."""
+    """Every number has a verdict; those at 9 m/s, which were not fitted, are counted apart; the split loses no row."""
     rows = compare({("navigation", 6.0): flight, ("navigation", 9.0): flight})
     numbers = computed_numbers(flight)
     assert len(rows["navigation"]) == 2 * len(numbers) == 22
     for row in rows["navigation"]:
         assert row["computed"] == numbers[row["metric"]]
-        if row["wind"] == 9.0:
-            assert (row["published"], row["ratio"], row["verdict"]) == (None, None, "prediction")
-        elif row["published"]:
+        assert row["held_out"] == (row["wind"] == 9.0)
+        assert row["verdict"] == verdict(row["metric"], row["published"], row["computed"])
+        if row["published"]:
             assert row["ratio"] == pytest.approx(row["computed"] / row["published"])
     split = paper_tables(rows)
     assert sum(len(part) for part in split.values()) == 22
     assert {row["metric"] for row in split["table6"]} == {"ADC", "E", "theta_rms"}
-    assert sum(counts(rows["navigation"]).values()) == 22
-    assert counts(rows["navigation"])["prediction"] == 11
+    found = counts(rows["navigation"])
+    assert found["prediction"] == sum(found["held_out"].values()) == 11
+    assert found["agrees"] + found["near"] + found["differs"] == 11
+    lone = counts([row for row in rows["navigation"] if row["held_out"]])
+    assert (lone["agrees"], lone["near"], lone["differs"], lone["held_out"]) == (0, 0, 0, found["held_out"])
 
 
 def test_numbers_are_those_of_the_flight(flight):

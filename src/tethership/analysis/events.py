@@ -60,6 +60,30 @@ def find_events(values: Complex, valid: np.ndarray, tracks: list[str]) -> list[E
     return sorted(events, key=lambda event: event.position)
 
 
+def unstable_throughout(values: Complex, valid: np.ndarray) -> np.ndarray:
+    """Return which tracks grow at every point that has them: no event tells of these.
+
+    Parameters
+    ----------
+    values : ndarray
+        λ of every track [1/s], shape (points, tracks).
+    valid : ndarray of bool
+        Points that have them.
+
+    Returns
+    -------
+    ndarray of bool
+        Shape (tracks,); none where there is no valid point.
+    """
+    kept = values[valid]
+    return np.all(kept.real > _rounding(kept)[:, None], axis=0) & bool(len(kept))
+
+
+def _rounding(values: Complex) -> Real:
+    """Return below which growth [1/s] a real part is rounding, for each point."""
+    return NULL * np.abs(values).max(axis=1, initial=0.0)
+
+
 class _Step(NamedTuple):
     """Valid points in a row, their eigenvalues by track, the conjugates' tracks, and the tracks' names."""
 
@@ -106,7 +130,7 @@ def _crossings(step: _Step) -> Iterator[Event]:
 
 def _axis(step: _Step) -> Iterator[Event]:
     """Yield passages of the imaginary axis; of a pair only the upper member's."""
-    rounding = NULL * np.abs(step.values).max(axis=1, initial=0.0)
+    rounding = _rounding(step.values)
     for i in range(step.values.shape[1]):
         growth, upper = step.values[:, i].real, step.values[:, i].imag >= 0
         growth = np.where(np.abs(growth) < rounding, 0.0, growth)  # undamped in still air: a sign of 1e-33 is none

@@ -13,7 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from tethership.analysis.continuation import Batch, in_equilibrium, solve_points
-from tethership.analysis.events import find_events
+from tethership.analysis.events import find_events, unstable_throughout
 from tethership.analysis.grid import Axis, fill_lines, lay_grid, usual_places
 from tethership.analysis.judgement import limits_passed
 from tethership.analysis.mode_names import assign, mode_name, slots_of, track_names
@@ -128,6 +128,12 @@ class Sweep:
     def trimmed(self) -> np.ndarray:
         """Which points are in equilibrium with the thrust there is."""
         return np.array([outcome is TrimOutcome.converged for outcome in self.outcomes])
+
+    @property
+    def unstable_throughout(self) -> tuple[str, ...]:
+        """Tracks that are unstable at every point in equilibrium, so that no event tells of them."""
+        growing = unstable_throughout(self.eigenvalues, self.trimmed)
+        return tuple(name for name, of in zip(self.tracks, growing, strict=True) if of)
 
     def track(self, name: str) -> Complex:
         """Return one track's eigenvalues [1/s]; NaN where the point cannot be trimmed with the thrust there is.

@@ -17,6 +17,7 @@ from tethership.campaign.paired import paired_limit, paired_metric
 from tethership.campaign.plan import Plan
 from tethership.campaign.probability import estimate
 from tethership.campaign.schema import Requirement
+from tethership.campaign.trust import ON_TENSION, share_outside, with_snap
 from tethership.campaign.work import COMPARED
 from tethership.scenario.wind_file import record_warning
 from tethership.simulation import Outcome
@@ -30,6 +31,12 @@ NO_START = "no_equilibrium"
 
 LEVELS = (1e-2, 1e-3, 1e-4)
 """Probabilities per flight whose peak tension is extrapolated."""
+
+Flags = dict[str, np.ndarray]
+"""Limit → which flights exceed it, shape (laws, cases)."""
+
+BOUNDED = ("probability", "high", "verdict")
+"""What is told of a requirement with the wave of the snap added."""
 
 PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
 """Of the time to dock."""
@@ -47,7 +54,7 @@ def outcomes(data: xr.Dataset) -> np.ndarray:
     return np.where(data["unbalanced"].values < UNBALANCED, names, NO_START)
 
 
-def undetermined(data: xr.Dataset, flags: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def undetermined(data: xr.Dataset, flags: Flags) -> Flags:
     """Return for each limit which flights ended before they docked and had not exceeded it by then.
 
     What they would have done later nobody saw. Time is never undetermined: such a flight has not docked in time.
@@ -76,7 +83,7 @@ def limit_values(plan: Plan) -> dict[str, tuple[float, str]]:
     return found
 
 
-def exceeded(plan: Plan, data: xr.Dataset) -> dict[str, np.ndarray]:
+def exceeded(plan: Plan, data: xr.Dataset) -> Flags:
     """Return for each limit that has a number which flights exceed it, shape (laws, cases)."""
     peak, outcome, broken = data["tension_max"].values, data["outcome"].values, failed(data)
     control, tear, tensile, weakest = plan.scenario.config.watched_tensions()
@@ -110,7 +117,7 @@ def answer(plan: Plan, data: xr.Dataset, confidence: float = 0.95) -> dict[str, 
     confidence : float
         Of all intervals.
     """
-    flags = exceeded(plan, data)
+    flags, snapped = exceeded(plan, data), exceeded(plan, with_snap(data))
     names = [law.name for law in plan.laws]
     return {
         "runs": int(data["outcome"].size),
@@ -118,16 +125,18 @@ def answer(plan: Plan, data: xr.Dataset, confidence: float = 0.95) -> dict[str, 
         "failed": int(failed(data).sum()),
         "confidence": confidence,
         "sampling": plan.config.sampling,
-        "laws": {name: _of_law(plan, data, flags, i, confidence) for i, name in enumerate(names)},
+        "laws": {name: _of_law(plan, data, flags, snapped, i, confidence) for i, name in enumerate(names)},
         "pairs": [_pair(plan, data, flags, a, b) for a, b in itertools.combinations(range(len(names)), 2)],
-        "compliance": [_complied(plan, data, flags, r, i) for r in plan.config.requirements for i in _laws_of(plan, r)],
+        "compliance": [
+            _complied(plan, data, flags, snapped, r, i) for r in plan.config.requirements for i in _laws_of(plan, r)
+        ],
         "step_error": step_error(data),
         "wind_warning": record_warning(plan.scenario.config.wind, float(np.nanmax(data["flight_time"].values))),
     }
 
 
-def _of_law(plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray], law: int, confidence: float) -> dict[str, Any]:
-    """Return the answers of one law."""
+def _of_law(plan: Plan, data: xr.Dataset, flags: Flags, snapped: Flags, law: int, confidence: float) -> dict[str, Any]:
+    """Return the answers of one law; `snapped` are its flags with the wave of the snap added to the peaks."""
     sampling, replicate = plan.config.sampling, plan.sample.replicate
     rows = _estimated_rows(plan)
     left, values = undetermined(data, flags), limit_values(plan)
@@ -136,9 +145,13 @@ def _of_law(plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray], law: int
         | {"undetermined": int(left[name][law][rows].sum()), "value": values[name][0], "unit": values[name][1]}
         for name, of in flags.items()
     }
+    for name in set(ON_TENSION) & set(flags):
+        bound = estimate(snapped[name][law][rows], sampling, replicate[rows], confidence)
+        probabilities[name] |= {"probability_with_snap": bound.probability, "high_with_snap": bound.high}
     codes, ended = data["outcome"].values[law], outcomes(data)[law]
     return {
         "exceedance": probabilities,
+        "quasi_static_outside": share_outside(data, law, ~failed(data)[law]),
         "failed": int(failed(data)[law].sum()),
         "outcomes": {str(name): int(np.sum(ended == name)) for name in np.unique(ended)},
         "docking_time": _percentiles(data["docking_time"].values[law][rows]),
@@ -199,7 +212,7 @@ def _importance(plan: Plan, peaks: np.ndarray) -> list[Any]:
     return list(rank_importance(tuple(names[i] for i in moved), values[:, moved], peaks))
 
 
-def _pair(plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray], first: int, second: int) -> dict[str, Any]:
+def _pair(plan: Plan, data: xr.Dataset, flags: Flags, first: int, second: int) -> dict[str, Any]:
     """Return two laws on the same cases."""
     independent = plan.config.sampling == "random"
     untested: dict[str, Any] = {} if independent else {"p_value": None, "low": None, "high": None}
@@ -218,14 +231,21 @@ def _laws_of(plan: Plan, requirement: Requirement) -> list[int]:
 
 
 def _complied(
-    plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray], requirement: Requirement, law: int
+    plan: Plan, data: xr.Dataset, flags: Flags, snapped: Flags, requirement: Requirement, law: int
 ) -> dict[str, Any]:
-    """Return a requirement under one law, judged."""
+    """Return a requirement under one law, judged; one on tension also with the wave of the snap added."""
     rows, limit = _estimated_rows(plan), requirement.limit
-    left = undetermined(data, flags)[limit][law][rows]
-    lost = failed(data)[law][rows]
-    found = judge(requirement, flags[limit][law][rows], left, lost, plan.config.sampling, plan.sample.replicate[rows])
-    return {"law": plan.laws[law].name, **found, "value": limit_values(plan).get(limit)}
+    lost, replicate = failed(data)[law][rows], plan.sample.replicate[rows]
+
+    def judged(of: Flags) -> dict[str, Any]:
+        left = undetermined(data, of)[limit][law][rows]
+        return judge(requirement, of[limit][law][rows], left, lost, plan.config.sampling, replicate)
+
+    found = {"law": plan.laws[law].name, **judged(flags), "value": limit_values(plan).get(limit)}
+    if limit not in ON_TENSION:
+        return found
+    bound = {f"{key}_with_snap": value for key, value in judged(snapped).items() if key in BOUNDED}
+    return {**found, **bound, "quasi_static_outside": share_outside(data, law, ~failed(data)[law])}
 
 
 def step_error(data: xr.Dataset) -> dict[str, Any]:

@@ -74,7 +74,7 @@ def judge(
     elif not reason and least.low is not None and least.low > allowed:
         verdict = "not met"
     return {
-        "requirement": requirement.text or f"{requirement.limit} in at most {allowed:g} of flights",
+        "requirement": requirement.text or f"{requirement.limit} in at most {100.0 * allowed:g} % of flights",
         "limit": requirement.limit,
         "allowed": allowed,
         "exceeding": least.exceeding,

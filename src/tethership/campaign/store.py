@@ -40,6 +40,8 @@ UNITS = {
     "seconds_above": "s",
     "saturated_seconds": "s",
     "misalignment_jumps": "1",
+    "quasi_static_outside": "1",
+    "snap_impulse": "N",
 }
 """Units of what a campaign keeps; without one of these finished results are not whole."""
 

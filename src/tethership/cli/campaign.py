@@ -19,7 +19,7 @@ from tethership.cli.common import (
     print_json,
 )
 from tethership.cli.completion import complete_campaign
-from tethership.cli.progress import Report, progress_bar
+from tethership.cli.progress import Pace, Report, progress_bar
 from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
 from tethership.errors import ConfigError, SolveError
 from tethership.scenario.names import check_title
@@ -70,14 +70,14 @@ def campaign(
     folder = _own_folder(name) if out is None else out
     writable_csv(csv)
     begun = time.perf_counter()
-    with progress_bar(f"campaign {Path(name).stem}") as report:
+    with progress_bar(f"campaign {Path(name).stem}", resumed=True) as report:
         varied = _scenario_changes(wind, formulation, changes)
         try:
             found = run_campaign(name, folder, own, varied, workers, scheduler, confidence, _counted(report))
         except KeyboardInterrupt:
             raise SolveError(f"interrupted; what is flown is in {folder}: run the same command to go on") from None
     result = _concluded(found, folder)
-    result["files"] += write_rows(csv, [row for _, rows in _shown(result) for row in rows])
+    result["files"] += write_rows(csv, _numbers(result))
     result["seconds"] = round(time.perf_counter() - begun, 1)
     if json:
         print_json(result)
@@ -98,14 +98,13 @@ def _own_folder(name: str) -> Path:
 
 
 def _counted(report: Report) -> Callable[[int, int], None]:
-    """Return a progress that says flights, and their rate since the start of this run."""
-    begun, first = time.perf_counter(), -1
+    """Return a progress that says flights, and their rate in the last minute of this run."""
+    pace = Pace()
 
     def progress(done: int, total: int) -> None:
-        nonlocal first
-        first = done if first < 0 else first
-        rate = (done - first) / max(time.perf_counter() - begun, 1e-9)
-        report(f"{done} of {total} flights, {rate:.0f}/s", done / total)
+        rate = pace.rate(done)
+        words = "" if rate is None else f", {rate:.3g}/s"
+        report(f"{done} of {total} flights{words}", done / total)
 
     return progress
 
@@ -152,16 +151,39 @@ def _footer(plan: Any) -> dict[str, Any]:
     }
 
 
+def _numbers(result: dict[str, Any]) -> list[Row]:
+    """Return probabilities [-], shares outside the trusted range [-] and verdicts as numbers for a file."""
+    rows = []
+    for name, law in result["laws"].items():
+        for limit, row in law["exceedance"].items():
+            rows.append(Row(f"{limit.replace('_', ' ')}, {name}", row["probability"]))
+            if "probability_with_snap" in row:
+                words = f"{limit.replace('_', ' ')} with the snap's wave at most, {name}"
+                rows.append(Row(words, row["probability_with_snap"]))
+        outside = law["quasi_static_outside"]
+        rows += [Row(f"cable outside its trusted range, {end}, {name}", outside[end]) for end in ("median", "largest")]
+    return rows + [Row(row["requirement"], row["verdict"], row["law"]) for row in result["compliance"]]
+
+
 def _shown(result: dict[str, Any]) -> list[tuple[str, list[Row]]]:
     """Return titles and rows of what is told: probabilities law by law, and verdicts."""
+    from tethership.view.campaign_setting import trusted
+    from tethership.view.words import percent, percents, trust
+
     found = []
     for name, law in result["laws"].items():
-        rows = [
-            Row(f"{limit.replace('_', ' ')}, {name}", row["probability"], "", ".2%", _interval(row))
-            for limit, row in law["exceedance"].items()
-        ]
-        found.append((f"{name}: probability of exceeding each limit, {100 * result['confidence']:g} % interval", rows))
-    rows = [Row(row["requirement"], row["verdict"], row["law"], "", _interval(row)) for row in result["compliance"]]
+        rows = []
+        for limit, row in law["exceedance"].items():
+            bound = percent(row.get("probability_with_snap"))
+            note = f"; at most {bound} with the snap's wave" if "probability_with_snap" in row else ""
+            words = f"{limit.replace('_', ' ')}, {name}"
+            rows.append(Row(words, percent(row["probability"]), "", "", f"{percents(row)}{note}"))
+        title = f"{name}: probability of exceeding each limit, {100 * result['confidence']:g} % interval"
+        found.append((f"{title}; of tensions: {trust(law['quasi_static_outside'])}", rows))
+    rows = [
+        Row(row["requirement"], row["verdict"], row["law"], "", f"  {percents(row)}; {trusted(row)}".rstrip("; "))
+        for row in result["compliance"]
+    ]
     return [*found, ("requirements", rows)] if rows else found
 
 
@@ -172,10 +194,3 @@ def _print(result: dict[str, Any]) -> None:
         print_table(rows, title)
     for path in result["files"]:
         typer.echo(f"wrote {path}")
-
-
-def _interval(row: dict[str, Any]) -> str:
-    """Return an interval in percent."""
-    if row["low"] is None:
-        return "  no interval"
-    return f"  {100 * row['low']:.2f} … {100 * row['high']:.2f} %"

@@ -30,7 +30,7 @@ ScenarioArgument = Annotated[
     ),
 ]
 ScenarioOption = Annotated[
-    str,
+    str | None,
     typer.Option(
         "--scenario", help="Packaged scenario or a path that ends in .toml.", autocompletion=complete_scenario
     ),

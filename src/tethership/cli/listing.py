@@ -6,14 +6,14 @@ from typing import Annotated, Any
 import typer
 
 from tethership.cli.common import JsonOption, ScenarioOption, print_json
-from tethership.cli.completion import complete_kind
+from tethership.cli.completion import complete_kind, complete_scenario
 from tethership.cli.tables import CsvOption, writable_csv, write_csv
 from tethership.errors import ConfigError, shown, suggestion
 from tethership.results.schema import VARIABLES
 from tethership.scenario import list_parameters, load_scenario
 from tethership.scenario.load import KINDS, describe_packaged
 
-EXAMPLE = "Example: tethership list parameters --scenario docking --csv parameters.csv"
+EXAMPLE = "Example: tethership list parameters mine.toml --csv parameters.csv"
 
 LISTS = (*KINDS, "outputs", "parameters")
 """What may be listed."""
@@ -27,7 +27,15 @@ def list_(
             autocompletion=complete_kind,
         ),
     ] = None,
-    scenario: ScenarioOption = "docking",
+    of: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[SCENARIO]",
+            help="Whose parameters: a packaged scenario or a path that ends in .toml. Default: docking.",
+            autocompletion=complete_scenario,
+        ),
+    ] = None,
+    scenario: ScenarioOption = None,
     csv: CsvOption = None,
     json: JsonOption = False,
 ) -> None:
@@ -37,11 +45,16 @@ def list_(
     """
     if kind is not None and kind not in LISTS:
         raise ConfigError(f"there is no list {shown(kind)}{suggestion(kind, LISTS)} Allowed: {', '.join(LISTS)}")
+    named = [name for name in (of, scenario) if name is not None]
+    if named and kind != "parameters":
+        raise ConfigError(f"only parameters are a scenario's; write tethership list parameters {named[0]}")
+    if len(set(named)) > 1:
+        raise ConfigError(f"two scenarios are named, {of} and --scenario {scenario}; name one")
     writable_csv(csv)
     if kind == "outputs":
         _show(kind, _outputs(), csv, json)
     elif kind == "parameters":
-        _show(kind, _parameters(scenario), csv, json)
+        _show(kind, _parameters(named[0] if named else "docking"), csv, json)
     else:
         _packaged(kind, csv, json)
 

@@ -5,6 +5,7 @@ A bar on a terminal; elsewhere (a log, a batch queue) a plain line every half mi
 
 import sys
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -15,49 +16,86 @@ QUIET = 30.0
 """Time between two plain lines [s]."""
 
 
+RECENT = 60.0
+"""Time over which it is judged how fast work goes on [s]."""
+
+
+class Pace:
+    """How fast work goes on, by what was reported in the last minute, or by the last two reports if they are rarer."""
+
+    def __init__(self) -> None:
+        self._seen: deque[tuple[float, float]] = deque()
+
+    def rate(self, done: float) -> float | None:
+        """Take down how much is done and return how much that is in a second, None while it is not known."""
+        now = time.monotonic()
+        self._seen.append((now, done))
+        while len(self._seen) > 2 and self._seen[1][0] <= now - RECENT:
+            self._seen.popleft()
+        then, before = self._seen[0]
+        return (done - before) / (now - then) if done > before and now > then else None
+
+
 @contextmanager
-def progress_bar(title: str) -> Iterator[Report]:
-    """Show progress with the time left while the body runs; yields a function to call with (text, share done)."""
+def progress_bar(title: str, resumed: bool = False) -> Iterator[Report]:
+    """Show progress with the time left while the body runs; yields a function to call with (text, share done).
+
+    Parameters
+    ----------
+    title : str
+        Of the work.
+    resumed : bool
+        The first report says what was done before the work began; without it the work begins with nothing done.
+    """
+    pace = Pace()
+    if not resumed:
+        pace.rate(0.0)
+
+    def left(share: float) -> float | None:
+        rate = pace.rate(share)
+        return (1.0 - share) / rate if rate is not None else None
+
     if sys.stderr.isatty():
-        with _bar(title) as report:
+        with _bar(title, left) as report:
             yield report
     else:
-        yield _plain_lines(title)
+        yield _plain_lines(title, left)
 
 
-def _plain_lines(title: str) -> Report:
+def _plain_lines(title: str, left: Callable[[float], float | None]) -> Report:
     """Return a report that prints a line now and then."""
     begun = last = time.monotonic()
 
     def report(text: str, share: float) -> None:
         nonlocal last
-        now = time.monotonic()
+        now, rest = time.monotonic(), left(share)
         if now - last >= QUIET:
             last = now
-            left = f", {(now - begun) * (1.0 / share - 1.0):.0f} s left" if share > 0 else ""
-            print(f"{title}: {100 * share:.0f} %, {text}, {now - begun:.0f} s{left}", file=sys.stderr, flush=True)
+            words = "" if rest is None else f", {rest:.0f} s left"
+            print(f"{title}: {100 * share:.0f} %, {text}, {now - begun:.0f} s{words}", file=sys.stderr, flush=True)
 
     return report
 
 
 @contextmanager
-def _bar(title: str) -> Iterator[Report]:
+def _bar(title: str, left: Callable[[float], float | None]) -> Iterator[Report]:
     """Show a bar."""
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
     columns = (
         TextColumn("  {task.description}"),
         BarColumn(),
         TextColumn("{task.percentage:>3.0f} %"),
         TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
+        TextColumn("{task.fields[left]}"),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(title, total=1.0)
+        task = bar.add_task(title, total=1.0, left="")
 
         def report(text: str, share: float) -> None:
-            bar.update(task, description=f"{text:<36}", completed=share)
+            rest = left(share)
+            words = "" if rest is None else f"{rest:.0f} s left"
+            bar.update(task, description=f"{text:<36}", completed=share, left=words)
 
         yield report

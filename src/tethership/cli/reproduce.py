@@ -2,6 +2,7 @@
 
 import platform
 import time
+from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,7 +15,7 @@ from tethership.cli.tables import CsvOption, writable_csv, write_csv
 from tethership.errors import ConfigError, suggestion
 
 if TYPE_CHECKING:
-    from tethership.reproduction.jobs import Job
+    from tethership.reproduction.jobs import Job, Settings
 
 EXAMPLE = "Example: tethership reproduce --only table3,figure12 --out reproduction"
 
@@ -33,6 +34,9 @@ ITEMS: dict[str, tuple[str, ...]] = {
     "retuned": ("retuned",),
 }
 """What --only may name, and the jobs that make it."""
+
+UNSEEN = ("flights", "line_pictures")
+"""Jobs that are no part of the report by themselves: what others read, pictures of what is there without them."""
 
 
 def reproduce(
@@ -56,7 +60,8 @@ def reproduce(
     """Compute Tables 3-6, Figures 6-15 and every claim of the paper, from the stored fits, and write a report.
 
     Writes report.html (one page, opens without a network), tables.json and all figures (PNG and interactive) into
-    --out. A second run takes what is unchanged from there.
+    --out. A second run takes what is unchanged from there. With --only the report also keeps the parts that stand in
+    --out already, and says what it lacks.
     """
     from tethership.reproduction.jobs import Settings, load_part, run_jobs
     from tethership.view.study_report import write_study
@@ -69,19 +74,21 @@ def reproduce(
     with progress_bar("reproduce") as report:
         anew = run_jobs(jobs, out, settings, report, fresh)
         report("report", 1.0)
-        path = write_study(out, settings, set(jobs), _footer(settings))
-    result: dict[str, Any] = {"formulation": settings.formulation, "tables": {}, "claims": {}}
+        parts, left_out = _in_the_report(out, settings, jobs)
+        path = write_study(out, settings, parts, left_out, _footer(settings))
+    result: dict[str, Any] = {"formulation": settings.formulation, "partial": bool(left_out), "left_out": left_out}
+    result |= {"tables": {}, "claims": {}}
     for name in ("tables", "linear"):
-        if name in jobs:
+        if name in parts:
             part = load_part(out, name)
             result["tables"] |= part.get("tables", {})
             result["claims"] |= part["claims"]
     for name in ("variants", "uncertainty", "cable", "terms", "retuned"):
-        if name in jobs:
+        if name in parts:
             result[name] = load_part(out, name)
     result["counts"] = _counts(result)
     (out / "tables.json").write_text(json_text(result), encoding="utf-8")
-    keys = ("wind", "metric", "published", "computed", "ratio", "verdict")
+    keys = ("wind", "metric", "published", "computed", "ratio", "verdict", "held_out")
     rows = ([name, *(row[key] for key in keys)] for name, table in result["tables"].items() for row in table)
     result["files"] = [str(path), str(out / "tables.json"), *write_csv(csv, ("table", *keys), rows)]
     result["computed_anew"] = [name for name, again in anew.items() if again]
@@ -145,7 +152,16 @@ def _chosen(only: str | None) -> dict[str, "Job"]:
     return {name: job for name, job in jobs.items() if name in wanted}
 
 
-def _counts(result: dict[str, Any]) -> dict[str, int]:
+def _in_the_report(out: Path, settings: "Settings", done: Collection[str]) -> tuple[list[str], list[str]]:
+    """Return the parts that the report has, those just done and those that stand already, and titles of the others."""
+    from tethership.reproduction.jobs import belongs
+
+    jobs = _jobs()
+    parts = [name for name in jobs if name in done or belongs(out, name, settings)]
+    return parts, [job.title for name, job in jobs.items() if name not in parts and name not in UNSEEN]
+
+
+def _counts(result: dict[str, Any]) -> dict[str, Any]:
     """Return how many claims hold and numbers agree."""
     from tethership.reproduction.tables import counts
 
@@ -161,8 +177,6 @@ def _footer(settings: Any) -> dict[str, Any]:
     return {
         "tethership": __version__,
         "formulation": settings.formulation,
-        "perturbed flights": settings.flights,
-        "seed": settings.seed,
         "jax": jax.__version__,
         "python": platform.python_version(),
         "written": time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime()),
@@ -173,11 +187,11 @@ def _print(result: dict[str, Any]) -> None:
     """Print verdicts in short."""
     number = result["counts"]
     typer.echo(f"formulation {result['formulation']}")
+    if result["left_out"]:
+        typer.echo(f"  partial: without {', '.join(result['left_out'])}; leave out --only for the whole study")
     if result["tables"]:
-        typer.echo(
-            f"  tables   {number['agrees']} agree, {number['near']} near, {number['differs']} differ, "
-            f"{number['prediction']} predictions"
-        )
+        for words, of in (("fitted", number), ("held out", number["held_out"])):
+            typer.echo(f"  tables, {words:<8}  {of['agrees']} agree, {of['near']} near, {of['differs']} differ")
     for name, claim in result["claims"].items():
         met = sum(claim["parts"].values())
         verdict = "holds" if claim["holds"] else f"does not hold ({met} of {len(claim['parts'])} parts do)"

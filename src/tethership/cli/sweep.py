@@ -166,6 +166,7 @@ def summary(found: "Sweep") -> dict[str, Any]:
         },
         "events": [event for event in events if event["kind"] in MEETINGS],
         "stability": [event for event in events if event["kind"] not in MEETINGS],
+        "unstable_throughout": list(found.unstable_throughout),
         "outcome": [outcome.name for outcome in found.outcomes],
         "throttle": found.throttle,
         "tension": found.tension,
@@ -292,6 +293,9 @@ def _print(result: dict[str, Any], found: list["Sweep"]) -> None:
         for point, value in enumerate(next(iter(one.values.values()))):
             if not one.trimmed[point]:
                 typer.echo(f"  {value:<10.4g} {one.outcomes[point].name}: {_lacking(one, point)}")
+        for name in one.unstable_throughout:
+            growth = one.track(name)[one.trimmed].real
+            typer.echo(f"  {name} unstable at every point (Re λ {growth.min():.3g} … {growth.max():.3g} 1/s)")
         for event in one.events:
             place = ", ".join(f"{name} = {value:.4g}" for name, value in event.at.items())
             verb = {"unstable": "becomes unstable", "stable": "becomes stable"}.get(event.kind, event.kind)

@@ -15,7 +15,7 @@ from tethership.fitting.misfit import Item, fly_rows, items, residuals
 from tethership.fitting.search import Archive, Slopes, evolve, misfit, refine, sobol, spread
 from tethership.fitting.space import UNKNOWNS, to_shares, to_values
 from tethership.fitting.spectrum import Spectrum
-from tethership.fitting.targets import TABLES, Row, published_rows
+from tethership.fitting.targets import TABLES, Row, fitted_rows
 from tethership.scenario import Scenario
 
 NUDGE = 1.01
@@ -162,7 +162,7 @@ def identify(
     """
     budget = budget or Budget()
     begun = time.perf_counter()
-    rows = published_rows()
+    rows = fitted_rows()
     spectrum = Spectrum(scenario.formulation)
     plain = items(rows)
     start = sobol(len(UNKNOWNS), budget.power, seed)

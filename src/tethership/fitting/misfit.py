@@ -13,7 +13,7 @@ import numpy as np
 
 from tethership.campaign import Cases, fly_blocks, layer_switches
 from tethership.fitting.space import named_values
-from tethership.fitting.targets import Row, published_rows
+from tethership.fitting.targets import Row, fitted_rows
 from tethership.scenario import Scenario
 from tethership.simulation import Outcome
 from tethership.simulation.batch import CODES
@@ -69,9 +69,9 @@ class Item(NamedTuple):
 
 
 def items(rows: Sequence[Row] | None = None) -> tuple[Item, ...]:
-    """Return all numbers that are fitted, row by row."""
+    """Return all numbers that are fitted, row by row; raises ConfigError for a row that is held out."""
     found = []
-    for row in published_rows() if rows is None else rows:
+    for row in fitted_rows(rows):
         for metric, tolerance in TOLERANCES.items():
             value = row.values[metric]
             if isinstance(value, list):
@@ -108,11 +108,16 @@ def fly_rows(
     -------
     list of dict
         One per row, arrays with the vector first.
+
+    Raises
+    ------
+    ConfigError
+        A row is held out.
     """
     columns = {**named_values(values), **(more or {})}
     blocks = [
         Cases.of({**columns, "wind.speed": row.wind, **layer_switches(scenario, row.layers)}, len(values))
-        for row in rows
+        for row in fitted_rows(rows)
     ]
     return fly_blocks(scenario.changed({"stop.time_limit": TIME_LIMIT}), blocks, unbreakable=True)
 

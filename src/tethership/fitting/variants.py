@@ -15,7 +15,7 @@ from tethership.fitting.misfit import Item, fly_rows, items, residuals
 from tethership.fitting.search import Archive, evolve, misfit
 from tethership.fitting.space import to_shares, to_values
 from tethership.fitting.spectrum import Spectrum
-from tethership.fitting.targets import published_rows
+from tethership.fitting.targets import fitted_rows
 from tethership.scenario import Scenario
 
 PRINTED_SHARE = 2.2675
@@ -96,7 +96,7 @@ def fitted_items(fit: dict[str, Any]) -> tuple[Item, ...]:
 
 def objective(scenario: Scenario, fit: dict[str, Any]) -> Objective:
     """Return the residuals of a scenario, in the tolerances of a stored fit, as a function of places in the box."""
-    return Objective(scenario, published_rows(), fitted_items(fit), Spectrum(scenario.formulation))
+    return Objective(scenario, fitted_rows(), fitted_items(fit), Spectrum(scenario.formulation))
 
 
 def refit(
@@ -134,5 +134,5 @@ def refit(
 def table_misfits(scenario: Scenario, fit: dict[str, Any], variant: Variant | None, values: np.ndarray) -> np.ndarray:
     """Return the misfits to the tables of vectors [SI], in the tolerances of a fit, with or without a variant."""
     here = scenario if variant is None else scenario.changed(variant.changes)
-    rows = published_rows()
+    rows = fitted_rows()
     return misfit(residuals(fly_rows(here, np.atleast_2d(values), rows), rows, fitted_items(fit)))

@@ -2,7 +2,8 @@
 
 Depends on: campaign (its pool of processes). A job is a function of a folder and settings that returns plain data; what
 it needs of others it reads from their files. Its key is a digest of the package's own files, the settings and its name:
-with the same key the stored result stands.
+with the same key the stored result stands. A part that was made by the same files in the same formulation belongs to
+the same study (`belongs`), whatever the other settings were.
 """
 
 import hashlib
@@ -115,7 +116,7 @@ def run_jobs(
     finished = len(jobs) - len(todo)
     if todo:
         for name, result in _results(todo, folder, settings):
-            _keep(folder, name, keys[name], result)
+            _keep(folder, name, keys[name], _study(digest, settings), result)
             finished += 1
             if progress is not None:
                 progress(jobs[name].title, finished / len(jobs))
@@ -126,22 +127,31 @@ def _key(digest: str, settings: Settings, name: str) -> str:
     return hashlib.sha256(json.dumps([digest, settings._asdict(), name]).encode()).hexdigest()
 
 
-def _stands(folder: Path, name: str, key: str) -> bool:
+def _study(digest: str, settings: Settings) -> str:
+    return hashlib.sha256(json.dumps([digest, settings.formulation]).encode()).hexdigest()
+
+
+def belongs(folder: Path, name: str, settings: Settings) -> bool:
+    """Return whether a job's result is in a folder, made by these files of the package in this formulation."""
+    return _stands(folder, name, _study(source_digest(), settings), "study")
+
+
+def _stands(folder: Path, name: str, key: str, of: str = "key") -> bool:
     """Return whether a stored result has this key and its files are there."""
     try:
         stored = json.loads(part_file(folder, name).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return False
-    if not isinstance(stored, dict) or stored.get("key") != key:
+    if not isinstance(stored, dict) or stored.get(of) != key:
         return False
     return all((folder / file).exists() for file in stored["result"].get("files", []))
 
 
-def _keep(folder: Path, name: str, key: str, result: dict[str, Any]) -> None:
+def _keep(folder: Path, name: str, key: str, study: str, result: dict[str, Any]) -> None:
     """Write a result; a file half written is never taken for one."""
     path = part_file(folder, name)
     partial = path.with_suffix(".partial")
-    partial.write_text(json.dumps({"key": key, "result": plain(result)}), encoding="utf-8")
+    partial.write_text(json.dumps({"key": key, "study": study, "result": plain(result)}), encoding="utf-8")
     partial.replace(path)
 
 

@@ -138,6 +138,8 @@ def uncertainty_part(folder: Path, settings: Settings) -> dict[str, Any]:
     return {
         "perturbed": uncertainty(scenario, members, WINDS, settings.flights, settings.seed),
         "set_alone": uncertainty(scenario, members, WINDS, settings.flights, settings.seed, perturb=False),
+        "flights": settings.flights,
+        "seed": settings.seed,
     }
 
 

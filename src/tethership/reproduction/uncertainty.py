@@ -10,7 +10,7 @@ import numpy as np
 from tethership.campaign import Cases, fly_blocks, layer_switches, perturbed
 from tethership.fitting.space import named_values
 from tethership.fitting.targets import TABLES
-from tethership.reproduction.tables import THRESHOLDS, published_numbers
+from tethership.reproduction.tables import THRESHOLDS, held_out, published_numbers
 from tethership.scenario import Scenario
 from tethership.simulation import Outcome
 from tethership.simulation.batch import CODES
@@ -47,8 +47,8 @@ def uncertainty(
     Returns
     -------
     list of dict
-        layers, wind, metric, low, median, high, published, inside (None without a published number), broken (share of
-        flights that broke the cable).
+        layers, wind, metric, low, median, high, published, inside (None without a flight that has such a number),
+        held_out, broken (share of flights that broke the cable).
     """
     drawn = members[np.random.default_rng(seed).integers(0, len(members), flights)]
     keys = [(table, wind) for table in TABLES for wind in winds]
@@ -64,7 +64,7 @@ def uncertainty(
 
 def _cells(table: str, wind: float, flown: dict[str, np.ndarray]) -> list[dict[str, Any]]:
     """Return the cells of one row."""
-    published = published_numbers().get((table, wind), {})
+    published, apart = published_numbers()[table, wind], (table, wind) in held_out()
     names = ("tension_max", "tension_mean", "rewind_rate_min", "docking_time", "ADC", "E", "theta_rms")
     values = {name: flown[name] for name in names}
     values |= {f"seconds_above {limit}": flown["seconds_above"][:, i] for i, limit in enumerate(THRESHOLDS)}
@@ -72,11 +72,11 @@ def _cells(table: str, wind: float, flown: dict[str, np.ndarray]) -> list[dict[s
     rows = []
     for name, value in values.items():
         finite = value[np.isfinite(value)]
-        given = published.get(name)
+        given = published[name]
         low, middle, high = map(float, np.percentile(finite, [LOW, 50.0, HIGH])) if len(finite) else (np.nan,) * 3
         rounding = 0.005  # the tables print two decimals, tensions none
         slack = 100.0 * rounding if name.startswith("tension") else rounding
-        inside = None if given is None or not len(finite) else bool(low - slack <= given <= high + slack)
+        inside = None if not len(finite) else bool(low - slack <= given <= high + slack)
         rows.append(
             {
                 "layers": table,
@@ -87,6 +87,7 @@ def _cells(table: str, wind: float, flown: dict[str, np.ndarray]) -> list[dict[s
                 "high": high,
                 "published": given,
                 "inside": inside,
+                "held_out": apart,
                 "broken": broken,
             }
         )

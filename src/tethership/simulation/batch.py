@@ -218,6 +218,8 @@ def metrics_of(result: BatchResult) -> dict[str, np.ndarray]:
     Notes
     -----
     `docking_time` is NaN for a flight that did not dock; `flight_time` is that of every one. Angles in degrees.
+    `quasi_static_outside` [-] and `snap_impulse` [N] are `share_outside` and `largest_impulse` of
+    `simulation.quasi_static`.
     """
     tally = jax.device_get(result.tally)
     outcome = np.asarray(result.outcome)
@@ -240,4 +242,6 @@ def metrics_of(result: BatchResult) -> dict[str, np.ndarray]:
         "clearance_min": tally.clearance,
         "saturated_seconds": tally.saturated_sum,
         "misalignment_jumps": tally.jumps,
+        "quasi_static_outside": tally.outside_sum / span,
+        "snap_impulse": tally.impulse,
     }

@@ -24,18 +24,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from tethership.scenario import ScenarioConfig
-
-TRUSTED = 0.3
-"""Largest pace κ at which the quasi-static tension may be trusted [-]."""
-
-MEMORY = 3.0
-"""Time for which a hurried cable swings on [s]: air damps it at ½ ρ D C_dc |v|/m, 0.5 1/s in 6 m/s."""
-
-SLACK = 0.99
-"""Elongation below which a cable was slack before a snap [-]."""
-
-LEAST_TENSION = 5.0
-"""Tension below which a change counts as if it were of this [N]: a slack cable's newtons move nothing."""
+from tethership.simulation.cable_pace import LEAST_MASS, LEAST_TENSION, MEMORY, SLACK, TRUSTED, first_mode
 
 TOLD = 0.01
 """Share of a flight outside the trusted range from which it is told [-]."""
@@ -63,7 +52,7 @@ def tension_pace(flight: Recorded) -> NDArray[np.float64]:
     if len(time) < 2 or not len(mass):
         return np.zeros(tension.shape)
     floor = np.maximum(tension, LEAST_TENSION)
-    mode = np.pi / data["cable_length"].to_numpy() * np.sqrt(floor / np.maximum(mass, 1e-6))
+    mode = first_mode(floor, data["cable_length"].to_numpy(), np.maximum(mass, LEAST_MASS))
     return np.abs(np.gradient(tension, time, axis=0)) / floor / mode
 
 

@@ -1,15 +1,16 @@
 """Metrics of Tables 3–6 summed up while a flight is flown, so that a batch keeps no samples.
 
 Depends on: simulation.closed_loop, control, physics by their results. The definitions are those of `results.metrics`,
-which reads them off a flight's samples; a test holds the two against each other.
+which reads them off a flight's samples, and of `simulation.quasi_static`; tests hold them against each other.
 """
 
 from typing import NamedTuple
 
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from tethership.control import misalignment
+from tethership.simulation.cable_pace import LEAST_MASS, LEAST_TENSION, MEMORY, SLACK, TRUSTED, first_mode
 from tethership.simulation.closed_loop import ClosedLoop, Instant
 from tethership.spatial import safe_norm
 from tethership.system.tethered import end_tension
@@ -38,6 +39,14 @@ class Signals(NamedTuple):
         Of the hull [m].
     misalignment : Float[Array, ""]
         χ of the first cable [rad].
+    ends : Float[Array, "cables"]
+        Tension of each cable at its tether point [N].
+    brisk : Float[Array, "cables"]
+        Fastest change of it that a quasi-static cable may be trusted with, 0.3 T ω₁ [N/s].
+    elongation : Float[Array, "cables"]
+        e [-].
+    wave : Float[Array, "cables"]
+        Tension of the axial wave per rate of elongation, L√(EA m) [N s]: the ends part at v = L de/dt.
     """
 
     tension: Float[Array, ""]
@@ -50,14 +59,21 @@ class Signals(NamedTuple):
     rewind_rate: Float[Array, ""]
     clearance: Float[Array, ""]
     misalignment: Float[Array, ""]
+    ends: Float[Array, "cables"]
+    brisk: Float[Array, "cables"]
+    elongation: Float[Array, "cables"]
+    wave: Float[Array, "cables"]
 
 
 def signals(loop: ClosedLoop, now: Instant) -> Signals:
     """Return the signals at an instant; a ship without cables has no tension."""
-    cables, zero = now.cables, jnp.zeros(())
-    tension = jnp.max(jnp.stack([safe_norm(c.ship) for c in cables])) if cables else zero
+    cables, zero, none = now.cables, jnp.zeros(()), jnp.zeros(0)
+    ends = jnp.stack([safe_norm(c.ship) for c in cables]) if cables else none
+    mass = jnp.stack([jnp.maximum(c.load.linear_density, LEAST_MASS) for c in loop.plant.cables]) if cables else none
+    stiffness = jnp.stack([c.law.stiffness for c in loop.plant.cables]) if cables else none
+    floor = jnp.maximum(ends, LEAST_TENSION)
     return Signals(
-        tension=tension,
+        tension=jnp.max(ends) if cables else zero,
         largest=jnp.max(jnp.stack([end_tension(c) for c in cables])) if cables else zero,
         anchor=jnp.max(jnp.stack([safe_norm(c.anchor) for c in cables])) if cables else zero,
         throttle=now.command.throttle,
@@ -67,6 +83,10 @@ def signals(loop: ClosedLoop, now: Instant) -> Signals:
         rewind_rate=jnp.min(now.rewind_rate) if cables else zero,
         clearance=loop.plant.environment.ground - loop.plant.ship.lowest_point(now.state),
         misalignment=misalignment(now.state.attitude, cables[0].span) if cables else zero,
+        ends=ends,
+        brisk=TRUSTED * floor * first_mode(floor, now.lengths, mass),
+        elongation=jnp.stack([safe_norm(c.span) for c in cables]) / now.lengths if cables else none,
+        wave=now.lengths * jnp.sqrt(stiffness * mass),
     )
 
 
@@ -93,6 +113,14 @@ class Tally(NamedTuple):
         Least Ψ [m/s] and hull clearance [m].
     jumps : Float[Array, ""]
         How often χ jumped by more than a right angle.
+    swinging : Float[Array, ""]
+        For how long a hurried cable still swings on [s].
+    outside_sum : Float[Array, ""]
+        Time with a cable outside the range in which the quasi-static one may be trusted [s].
+    slack : Bool[Array, "cables"]
+        Whether it was slack since it last came taut.
+    impulse : Float[Array, ""]
+        Largest tension of an axial wave, v√(EA m), of a cable that came taut [N].
     """
 
     time: Float[Array, ""]
@@ -112,6 +140,10 @@ class Tally(NamedTuple):
     slowest: Float[Array, ""]
     clearance: Float[Array, ""]
     jumps: Float[Array, ""]
+    swinging: Float[Array, ""]
+    outside_sum: Float[Array, ""]
+    slack: Bool[Array, "cables"]
+    impulse: Float[Array, ""]
 
 
 def begin(first: Signals, limits: Float[Array, "limits"]) -> Tally:
@@ -134,6 +166,10 @@ def begin(first: Signals, limits: Float[Array, "limits"]) -> Tally:
         jnp.zeros_like(limits),
         first.rewind_rate,
         first.clearance,
+        zero,
+        zero,
+        zero,
+        first.elongation < SLACK,
         zero,
     )
 
@@ -180,6 +216,9 @@ def add(
     partly = lambda start, end: span * (start + 0.5 * share * (end - start))  # noqa: E731
     reached = lambda start, end: start + share * (end - start)  # noqa: E731
     tension = reached(last.tension, now.tension)
+    hurried = jnp.any(jnp.abs(now.ends - last.ends) > 0.5 * step * (now.brisk + last.brisk))
+    taut = tally.slack & (now.elongation >= 1.0)
+    waves = jnp.where(taut, (now.elongation - last.elongation) / step * now.wave, 0.0)
     top = _vertex(tally.before.tension, last.tension, jnp.where(share < 1.0, tension, now.tension))
     peak = jnp.maximum(jnp.where(span > 0, top, last.tension), jnp.maximum(last.tension, tension))
     return Tally(
@@ -200,4 +239,8 @@ def add(
         slowest=jnp.minimum(tally.slowest, reached(last.rewind_rate, now.rewind_rate)),
         clearance=jnp.minimum(tally.clearance, reached(last.clearance, now.clearance)),
         jumps=tally.jumps + (jnp.abs(now.misalignment - last.misalignment) > 0.5 * jnp.pi) * (share >= 1.0),
+        swinging=jnp.where(hurried, MEMORY, jnp.maximum(tally.swinging - span, 0.0)),
+        outside_sum=tally.outside_sum + jnp.where(hurried, span, jnp.minimum(tally.swinging, span)),
+        slack=(tally.slack & ~taut) | (now.elongation < SLACK),
+        impulse=jnp.maximum(tally.impulse, jnp.max(waves, initial=0.0)),
     )

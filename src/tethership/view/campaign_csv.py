@@ -12,6 +12,12 @@ from tethership.campaign.answers import failed, outcomes
 from tethership.campaign.plan import Plan
 from tethership.campaign.work import COMPARED
 
+KEPT = (*COMPARED, "quasi_static_outside", "snap_impulse")
+"""Metrics of every flight."""
+
+OUTSIDE = ("median", "largest")
+"""Shares of a law's flights outside the quasi-static cable's trusted range."""
+
 
 def write_exceedance(folder: Path, answers: dict[str, Any]) -> Path:
     """Write the probability of passing each limit under each law; returns where."""
@@ -26,25 +32,27 @@ def write_exceedance(folder: Path, answers: dict[str, Any]) -> Path:
         "high",
         "confidence",
         "method",
+        "probability_with_snap",
+        "high_with_snap",
     )
     rows = (
-        [law, limit, *(row[key] for key in keys)]
+        [law, limit, *(row.get(key) for key in keys), *(of["quasi_static_outside"][end] for end in OUTSIDE)]
         for law, of in answers["laws"].items()
         for limit, row in of["exceedance"].items()
     )
-    return _written(folder / "exceedance.csv", ["law", "limit", *keys], rows)
+    return _written(folder / "exceedance.csv", ["law", "limit", *keys, *(f"outside_{end}" for end in OUTSIDE)], rows)
 
 
 def write_flights(folder: Path, plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray]) -> Path:
     """Write every flight, a row each: what was drawn [SI], how it ended, its metrics, limits passed; returns where."""
-    head = ["law", "case", *plan.sample.names, "outcome", "failed", *COMPARED, *flags]
+    head = ["law", "case", *plan.sample.names, "outcome", "failed", *KEPT, *flags]
     return _written(folder / "flights.csv", head, _flights(plan, data, flags))
 
 
 def _flights(plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray]) -> Iterator[list[Any]]:
     """Yield a row for each flight."""
     ended, lost = outcomes(data), failed(data)
-    metrics = [data[name].values for name in COMPARED]
+    metrics = [data[name].values for name in KEPT]
     for law, case in np.ndindex(ended.shape):
         numbers = (metric[law, case] for metric in metrics)
         passed = (int(of[law, case]) for of in flags.values())

@@ -10,6 +10,7 @@ import numpy as np
 import scipy.stats
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import PercentFormatter
 
 from tethership.view import style
 
@@ -52,7 +53,8 @@ def plot_limits(found: Mapping[str, Mapping[str, Mapping[str, Any]]], confidence
     axes.set_yticks(np.arange(len(limits)), [limit.replace("_", " ") for limit in limits], fontsize=style.FONT)
     axes.invert_yaxis()
     axes.set_xlim(-0.02, 1.02)
-    axes.set_xlabel(f"probability of exceeding the limit, {100 * confidence:g} % interval [-]")
+    axes.xaxis.set_major_formatter(PercentFormatter(1.0))
+    axes.set_xlabel(f"probability of exceeding the limit, {100 * confidence:g} % interval")
     axes.grid(alpha=0.25, axis="x")
     axes.legend(frameon=False, fontsize=style.FONT, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return axes
@@ -83,7 +85,8 @@ def plot_peaks(peaks: Mapping[str, np.ndarray], limits: Mapping[str, float], axe
                 level, 1.0, f" {name.replace('_', ' ')}", rotation=90, va="top", fontsize=style.FONT - 1, color="0.35"
             )
     axes.set_xlabel("largest tension at the tether point [N]")
-    axes.set_ylabel("share of flights above it [-]")
+    axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+    axes.set_ylabel("share of flights above it")
     axes.legend(frameon=False, fontsize=style.FONT)
     axes.grid(alpha=0.25)
     return axes
@@ -117,7 +120,8 @@ def plot_convergence(
         dash = "-" if i < len(COLOURS) else "--"
         axes.semilogx(path["flights"], path["probability"], dash, color=colour, label=name.replace("_", " "))
     axes.set_xlabel("flights")
-    axes.set_ylabel(f"probability, {100 * confidence:g} % interval [-]")
+    axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+    axes.set_ylabel(f"probability, {100 * confidence:g} % interval")
     axes.legend(frameon=False, fontsize=style.FONT, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     axes.grid(alpha=0.25)
     return axes
@@ -172,7 +176,8 @@ def plot_tail(peaks: np.ndarray, tail: Mapping[str, Any]) -> Figure:
     right.set_xscale("log")
     right.set_yscale("log")
     right.invert_xaxis()
-    right.set_xlabel("probability per flight [-]")
+    right.xaxis.set_major_formatter(PercentFormatter(1.0))
+    right.set_xlabel("probability per flight")
     right.set_ylabel("tension exceeded with it [N]")
     right.grid(alpha=0.25)
     return drawn

@@ -16,9 +16,10 @@ from tethership.errors import ConfigError
 from tethership.view import campaign_figures as figures
 from tethership.view.campaign_csv import write_exceedance, write_flights
 from tethership.view.campaign_plot import plot_campaign
-from tethership.view.campaign_setting import compliance_section, flown_section, interval
+from tethership.view.campaign_setting import TRUST, compliance_section, flown_section, interval
 from tethership.view.report import Figure, Section, Table, write_report
 from tethership.view.study_tables import NAMES
+from tethership.view.words import percent, percents, trust
 
 
 def write_campaign(
@@ -127,19 +128,31 @@ def _exceedance(
                 row["exceeding"],
                 row["undetermined"],
                 row["flights"],
-                row["probability"],
-                interval(row),
+                percent(row["probability"]),
+                percents(row),
+                percent(row.get("probability_with_snap")),
                 row["method"],
             ]
             for limit, row in of["exceedance"].items()
         ]
-    heads = ["limit", "law", "exceeding", "ended early", "of", "probability", "interval", "method"]
+    heads = [
+        "limit",
+        "law",
+        "exceeding",
+        "ended early",
+        "of",
+        "probability",
+        "interval",
+        "with the snap's wave, at most",
+        "method",
+    ]
     times = [
         [law, *(of["docking_time"].get(key) for key in ("count", "p5", "p50", "p95"))]
         for law, of in answers["laws"].items()
     ]
     shown = [
         Table("Probability of exceeding each limit.", heads, cells, EARLY),
+        _trusted(answers),
         Table("Time to dock of those that do [s].", ["law", "docked", "5 %", "median", "95 %"], times),
     ]
     drawn = _limit_figures(folder, plan, data, answers, flags)
@@ -147,11 +160,20 @@ def _exceedance(
         "Limits",
         [
             "Tensions are those at the tether point. Ground contact is a least clearance of the hull below zero: with "
-            "the anchor at ground level, as in the paper, almost every docking has it."
+            "the anchor at ground level, as in the paper, almost every docking has it.",
+            TRUST,
         ],
         shown,
         drawn,
     )
+
+
+def _trusted(answers: dict[str, Any]) -> Table:
+    """Return how far each law's tensions are to be trusted."""
+    outside = {law: of["quasi_static_outside"] for law, of in answers["laws"].items()}
+    cells = [[law, percent(of["median"]), percent(of["largest"]), of["impulse"]] for law, of in outside.items()]
+    heads = ["law", "outside, flight in the middle", "outside, at most", "largest wave of a snap [N]"]
+    return Table("Share of the flight with a cable outside the quasi-static range.", heads, cells)
 
 
 def _limit_figures(
@@ -190,7 +212,7 @@ def _pairs(answers: dict[str, Any]) -> Section | None:
                 m["second"],
                 m["difference"],
                 interval(m),
-                m["lower"],
+                percent(m["lower"]),
                 m["cases"],
                 m["p_value"],
             ]
@@ -224,7 +246,7 @@ def _tails(folder: Path, data: xr.Dataset, answers: dict[str, Any]) -> Section |
         if tail is None:
             continue
         cells = [
-            [level["probability"], level["level"], f"{level['low']:.4g} … {level['high']:.4g}"]
+            [percent(level["probability"]), level["level"], f"{level['low']:.4g} … {level['high']:.4g}"]
             for level in tail["levels"]
         ]
         note = (
@@ -245,7 +267,11 @@ def _tails(folder: Path, data: xr.Dataset, answers: dict[str, Any]) -> Section |
     if not shown:
         words = "No tail is fitted: it takes independent draws and some 300 flights of a law whose cable holds."
         return Section("Extremes", [words])
-    words = ["Levels beyond the flights are extrapolated; their interval is of the fit alone, not of the model."]
+    words = [
+        "Levels beyond the flights are extrapolated; their interval is of the fit alone, not of the model: "
+        + "; ".join(f"{law}: {trust(of['quasi_static_outside'])}" for law, of in answers["laws"].items())
+        + "."
+    ]
     return Section("Extremes", words, shown, drawn)
 
 

@@ -9,8 +9,9 @@ from tethership.campaign.answers import limit_values
 from tethership.campaign.distributions import Distribution
 from tethership.campaign.plan import Plan
 from tethership.scenario import list_parameters
+from tethership.simulation.cable_pace import MEMORY, TRUSTED
 from tethership.view.report import Section, Table
-from tethership.view.words import compass
+from tethership.view.words import compass, percent, percents, trust
 
 CONDITIONS = (
     "**Met**: the whole interval is at or below what is allowed, flights that ended early being counted as exceeding. "
@@ -21,6 +22,15 @@ CONDITIONS = (
     "Checks); none of these is in its interval.",
 )
 """What verdicts mean, in paragraphs."""
+
+TRUST = (
+    f"**Trust in tensions.** They are a quasi-static cable's, which may be trusted while they change more slowly than "
+    f"{TRUSTED:g} of the cable's first transverse mode, and did for {MEMORY:g} s; outside, a dynamic line may peak "
+    "elsewhere. *With the snap's wave*: the axial wave of each flight's hardest snap, closing speed × √(EA × linear "
+    "density), is added to its peak, an upper bound. The paper's cable (formulation `published`) pulls before it is "
+    "taut and overstates snaps already."
+)
+"""What is to be said beside every verdict on tension."""
 
 
 def flown_section(plan: Plan) -> Section:
@@ -43,6 +53,7 @@ def compliance_section(answers: Mapping[str, Any]) -> Section | None:
         "interval",
         "allowed",
         "least flights",
+        "on tension",
     ]
     cells = [
         [
@@ -52,9 +63,10 @@ def compliance_section(answers: Mapping[str, Any]) -> Section | None:
             f"{row['exceeding']} of {row['flights']}",
             row["undetermined"],
             row["failed"],
-            interval(row),
-            f"{row['allowed']:g} at {100 * row['confidence']:g} %",
+            percents(row),
+            f"{percent(row['allowed'])} at {100 * row['confidence']:g} %",
             row["least_flights"],
+            trusted(row),
         ]
         for row in rows
     ]
@@ -65,13 +77,23 @@ def compliance_section(answers: Mapping[str, Any]) -> Section | None:
         "it takes to meet the requirement."
     )
     return Section(
-        "Compliance", [*CONDITIONS, *reasons], [Table("Requirements.", heads, cells, note, verdict_column=2)]
+        "Compliance", [*CONDITIONS, TRUST, *reasons], [Table("Requirements.", heads, cells, note, verdict_column=2)]
     )
 
 
 def interval(row: Mapping[str, Any]) -> str | None:
     """Return an interval in words, None where there is none."""
     return None if row["low"] is None or row["high"] is None else f"{row['low']:.4g} … {row['high']:.4g}"
+
+
+def trusted(row: Mapping[str, Any]) -> str:
+    """Return what is to be said of a verdict on tension, nothing of another."""
+    if "quasi_static_outside" not in row:
+        return ""
+    return (
+        f"{trust(row['quasi_static_outside'])}; with the snap's wave added the probability would be at most "
+        f"{percent(row['probability_with_snap'])}: {row['verdict_with_snap']}"
+    )
 
 
 def numbered(value: tuple[float, str] | None) -> str:

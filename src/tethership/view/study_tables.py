@@ -48,7 +48,7 @@ def comparison(name: str, rows: Rows, intervals: Mapping[tuple[str, float, str],
         cells.append([words, row["wind"], row["published"], row["computed"], row["ratio"], shown, verdict])
     ended = sorted({f"{row['wind']:g} m/s {row['outcome']}" for row in rows if row["outcome"] != "docked"})
     note = "The interval is 5–95 % over ships that fit the tables at 6 and 12 m/s nearly as well. " + (
-        "No number at 9 m/s was fitted or is published here: it is a prediction."
+        "No number at 9 m/s was fitted: the computed one is a prediction, and the published one judges it."
     )
     if ended:
         note += f" Flights that did not dock: {', '.join(ended)}."

@@ -1,5 +1,6 @@
-"""Words that several figures say of a scenario. Depends on: scenario."""
+"""Words that several figures and tables say of a scenario or of odds. Depends on: scenario."""
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -15,6 +16,36 @@ POINTS = ("N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "W
 def compass(azimuth: float) -> str:
     """Return the point of the compass of an azimuth [rad], clockwise from north."""
     return POINTS[round(float(np.degrees(azimuth)) / 22.5) % 16]
+
+
+def percent(share: float | None) -> str:
+    """Return a share for people: in percent, to three digits of it or of what it lacks to the whole.
+
+    Examples
+    --------
+    >>> percent(0.0471), percent(0.99958), percent(1.0), percent(None)
+    ('4.71 %', '99.9580 %', '100 %', '–')
+    """
+    if share is None or not math.isfinite(share):
+        return "–"
+    rest = 100.0 * min(abs(share), abs(1.0 - share))
+    places = 0 if rest < 1e-9 else min(max(2 - math.floor(math.log10(rest)), 0), 6)
+    return f"{100.0 * share:.{places}f} %"
+
+
+def percents(row: Mapping[str, Any]) -> str:
+    """Return the interval of a share, `low` and `high` of a row, in percent."""
+    if row["low"] is None or row["high"] is None:
+        return "no interval"
+    return f"{percent(row['low'])} … {percent(row['high'])}"
+
+
+def trust(outside: Mapping[str, Any]) -> str:
+    """Return how far tensions are to be trusted, from `quasi_static_outside` of a campaign's answers."""
+    return (
+        f"the quasi-static cable is outside its trusted range in {percent(outside['median'])} of the flight in the "
+        f"middle (at most {percent(outside['largest'])})"
+    )
 
 
 def flown_words(config: ScenarioConfig, attributes: Mapping[str, Any]) -> list[str]:
