@@ -126,5 +126,5 @@ def _document(path: Path) -> dict[str, Any]:
     """Return a TOML file as read; nothing of it where it cannot be read, which loading it then says."""
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError):
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError):
         return {}

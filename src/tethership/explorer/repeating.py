@@ -4,6 +4,7 @@ from typing import Any
 
 from dash import dcc, html
 
+from tethership.errors import ConfigError
 from tethership.explorer.desk import Request
 from tethership.explorer.understanding import Understanding
 
@@ -22,7 +23,10 @@ def recipe(view: str, request: Request, known: Understanding) -> html.Details:
     """
     stem = request.choice.scenario.removesuffix(".toml")
     name = f"{stem}_explored.toml" if request.choice.values else f"{stem}_copy.toml"
-    text = known.file_text(request)
+    try:
+        text = known.file_text(request)
+    except ConfigError as error:
+        return _command_alone(view, request, known, str(error))
     own = request.choice.scenario.endswith(".toml")
     beside = " Keep it in the same folder: it may name files beside it." if own else ""
     return html.Details(
@@ -48,6 +52,13 @@ def recipe(view: str, request: Request, known: Understanding) -> html.Details:
         className="recipe",
         id={"disclosure": view},
     )
+
+
+def _command_alone(view: str, request: Request, known: Understanding, reason: str) -> html.Details:
+    """Return the disclosure where no file can be written, and why."""
+    command = _copied(f"command-{view}", "\n".join(known.commands(request)), "copied short")
+    summary = html.Summary("Show the command that gives this")
+    return html.Details([summary, command, html.P(f"No file: {reason}")], className="recipe", id={"disclosure": view})
 
 
 def _copied(name: str, text: str, style: str) -> Any:
