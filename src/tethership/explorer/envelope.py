@@ -79,12 +79,10 @@ def _place(part: str, entry: Any, form: Any) -> None:
     """Check that an entry names a place of the page, its id of a form."""
     _need(isinstance(entry, dict) and isinstance(entry.get("property"), str), f"{part} have id and property")
     given = entry.get("id")
-    if isinstance(form, dict):
-        _need(_is_mapping(given) and given and given.keys() == form.keys(), f"{part} are those of the callback")
-        same = all(wanted in WILDCARDS or given[key] == wanted for key, wanted in form.items())
-    else:
-        same = given == form
-    _need(bool(same), f"{part} are those of the callback")
+    same = given == form
+    if isinstance(form, dict) and isinstance(given, dict) and given.keys() == form.keys():
+        same = all(_is_word(given[key]) if word in WILDCARDS else given[key] == word for key, word in form.items())
+    _need(same, f"{part} are those of the callback")
 
 
 def _id(written: str) -> Any:
