@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from tethership.view import style
 
-COLOURS = style.CABLES
+COLOURS = style.SERIES
 """One colour a law."""
 
 WIDTH = 7.6
