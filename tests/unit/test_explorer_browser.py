@@ -161,6 +161,80 @@ def test_a_file_that_leads_to_the_page_opens_it(browser, served, tmp_path):
     context.close()
 
 
+NAMES = """() => {
+  for (const one of document.querySelectorAll("details")) one.open = true;
+  const words = (id) => document.getElementById(id)?.textContent.trim() ?? "";
+  const name = (e) => e.getAttribute("aria-labelledby")?.split(" ").map(words).join(" ").trim()
+    || e.getAttribute("aria-label") || [...(e.labels ?? [])].map((label) => label.textContent).join(" ").trim()
+    || (e.tagName === "BUTTON" ? e.textContent.trim() : "");
+  return [...document.querySelectorAll("input, button, select, textarea, [role=slider]")]
+    .filter((e) => e.getAttribute("aria-hidden") !== "true" && !e.closest(".js-plotly-plot"))
+    .map((e) => [e.tagName + " " + e.id, name(e)]);
+}"""
+"""What every control of the page is called to somebody who does not see it."""
+
+
+def test_every_control_has_a_name(page):
+    """Numbers by their label, sliders by that of their number, lists by their label and what is chosen."""
+    for tab in ("Trim", "Root locus", "Flight"):
+        page.open(tab)
+        page.settled()
+        found = page.page.evaluate(NAMES)
+        assert [place for place, name in found if not name] == []
+    names = [name for _, name in found]
+    assert names.count("wind speed") == 2  # its box and its slider
+    assert {"from", "to", "points", "over wind.speed", "Scenario docking", "file name"} <= set(names)
+    assert len(found) > 60
+
+
+@pytest.mark.parametrize("width", [420, 768])
+def test_a_narrow_page_is_read_and_used_without_scrolling_sideways(browser, served, width):
+    context = browser.new_context(viewport={"width": width, "height": 900})
+    opened = Page(context.new_page(), served[0])
+    for tab, view in (("Trim", "trim"), ("Root locus", "locus"), ("Flight", "flight")):
+        opened.open(tab)
+        opened.settled()
+        opened.page.evaluate("for (const one of document.querySelectorAll('.recipe')) one.open = true")
+        opened.page.wait_for_timeout(500)
+        assert opened.page.evaluate("document.documentElement.scrollWidth") <= width
+        panels = opened.page.evaluate(
+            """view => [...document.querySelectorAll(`[id*='"figure":"${view}"'] .cartesianlayer .bglayer rect,
+              [id*='"figure":"${view}"'] .bglayer .bg`)].map((e) => e.getBoundingClientRect().width)""",
+            view,
+        )
+        assert min(panels, default=999) > 0.25 * min(width, 700) - 60
+    opened.page.get_by_text("Numbers ↓").click()
+    opened.write("wind.speed", "7")
+    opened.page.get_by_text("Results ↑").click()
+    opened.settled("wind.speed = 7 m/s")
+    assert opened.troubles == []
+    context.close()
+
+
+def test_the_keyboard_reaches_the_controls_and_shows_where_it_is(page):
+    """Each stop of the first twelve has an outline that the others do not have, and the tabs are moved by arrows."""
+    seen = []
+    for _ in range(12):
+        page.page.keyboard.press("Tab")
+        seen.append(
+            page.page.evaluate(
+                """() => {
+                    const e = document.activeElement, style = getComputedStyle(e);
+                    const around = e.closest(".tabs label, .dash-dropdown-grid-container, .dash-input-container") ?? e;
+                    const looks = [style, getComputedStyle(around)];
+                    const near = e.nextElementSibling && getComputedStyle(e.nextElementSibling);
+                    return [e.id || e.className || e.tagName, [...looks, near].some((look) => look
+                      && ((look.outlineStyle !== "none" && look.outlineWidth !== "0px") || look.boxShadow !== "none"))];
+                }"""
+            )
+        )
+    assert [place for place, shown in seen if not shown] == []
+    assert len({place for place, _ in seen}) >= 8
+    page.page.locator("#tab input:checked").focus()
+    page.page.keyboard.press("ArrowRight")
+    page.settled("13 of 13")
+
+
 def test_changing_a_number_moves_the_locus(page):
     """Stars are the chosen ship's own roots, and follow the wind; dots follow the cable: as `sweep` and `modes` say."""
     page.open("Root locus")

@@ -123,7 +123,7 @@ def _panel_callbacks(app: Dash, known: Understanding) -> None:
 
 
 def _browser_callbacks(app: Dash) -> None:
-    """Let the page itself do what needs no answer: slider and text, marks, tabs, downloads."""
+    """Let the page itself do what needs no answer: slider and text, marks, tabs, room for figures, downloads."""
     app.clientside_callback(
         dash.ClientsideFunction("explorer", "follow"),
         Output(TEXT, "value"),
@@ -138,6 +138,13 @@ def _browser_callbacks(app: Dash) -> None:
         Input(TEXTS, "value"),
         State(FIELDS, "data-own"),
     )
+    for view in VIEWS:
+        app.clientside_callback(
+            dash.ClientsideFunction("explorer", "fit"),
+            Output({"figure": view}, "figure"),
+            Input({"plain": view}, "data"),
+            prevent_initial_call=True,
+        )
     app.clientside_callback(
         dash.ClientsideFunction("explorer", "show"),
         *[Output({"section": view}, "style") for view in VIEWS],

@@ -6,6 +6,7 @@ from dash import dcc, html
 
 from tethership.errors import ConfigError
 from tethership.explorer.desk import Request
+from tethership.explorer.panel import LONGEST, dom_id
 from tethership.explorer.understanding import Understanding
 
 
@@ -28,6 +29,7 @@ def recipe(view: str, request: Request, known: Understanding) -> html.Details:
     except ConfigError as error:
         return _command_alone(view, request, known, str(error))
     own = request.choice.scenario.endswith(".toml")
+    place = {"view": view, "part": "file-name"}
     beside = " Keep it in the same folder: it may name files beside it." if own else ""
     return html.Details(
         [
@@ -41,7 +43,8 @@ def recipe(view: str, request: Request, known: Understanding) -> html.Details:
             html.Div(
                 [
                     html.Button("Download", id={"view": view, "part": "download"}),
-                    dcc.Input(id={"view": view, "part": "file-name"}, value=name, type="text", className="file-name"),
+                    html.Label("file name", htmlFor=dom_id(place), className="unit"),
+                    dcc.Input(id=place, value=name, type="text", className="file-name", maxLength=LONGEST),
                     html.Button("Save in the folder", id={"view": view, "part": "save"}),
                     html.Span("", id={"view": view, "part": "saved"}, className="saved", role="status"),
                 ],

@@ -45,7 +45,7 @@ class Showing:
             for view in VIEWS
             for part, prop in (
                 ("head", "children"),
-                ("figure", "figure"),
+                ("plain", "data"),
                 ("figure", "style"),
                 ("rest", "children"),
                 ("recipe", "children"),
