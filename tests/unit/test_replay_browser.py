@@ -37,11 +37,16 @@ def folder(tmp_path_factory, windy):
 
 
 @pytest.fixture(scope="module")
-def chromium(browser):
+def playing():
     with sync_api.sync_playwright() as playwright:
-        running = playwright.chromium.launch(executable_path=browser, args=FLAGS)
-        yield running
-        running.close()
+        yield playwright
+
+
+@pytest.fixture(scope="module")
+def chromium(playing, browser):
+    running = playing.chromium.launch(executable_path=browser, args=FLAGS)
+    yield running
+    running.close()
 
 
 def wait(page, condition):
@@ -217,6 +222,54 @@ def test_two_flights_in_step(chromium, folder, windy):
         settle(page)
         first, second = state(page)["flights"]
         np.testing.assert_allclose(first["camera"]["position"], second["camera"]["position"], atol=1e-6)
+
+
+def test_both_flights_are_told_of_alike(chromium, folder):
+    """Whatever is shown of A is shown of B, and what is compared has one scale."""
+    with opened(chromium, folder / "two.html") as page:
+        plots = seek(page, 6.0)["plots"]
+        ranges = page.evaluate("tethership.state().plots.map((plot) => plot.range)")
+    named = {plot["title"]: dict(map(tuple, plot["shown"])) for plot in plots}
+    for letter in "AB":
+        assert set(named[f"attitude {letter}"]) == {"roll", "pitch", "yaw"}
+        assert len(named[f"throttle {letter}"]) == 6
+    assert set(named["cable length, distance to anchor"]) == {"A: length", "A: distance", "B: length", "B: distance"}
+    assert named["attitude A"] == named["attitude B"]  # both are the same flight at first
+    first, second = (ranges[i] for i, plot in enumerate(plots) if plot["title"].startswith("attitude"))
+    assert first == second
+
+
+def test_without_webgl_a_sentence_stands_in_for_the_scene_alone(playing, browser, folder, windy):
+    blind = playing.chromium.launch(executable_path=browser, args=["--no-sandbox", "--disable-3d-apis"])
+    for name in ("one", "two"):
+        with opened(blind, folder / f"{name}.html") as page:
+            assert page.locator(".sentence").first.inner_text().startswith("The view in space needs WebGL 2, which")
+            assert not page.locator("#cameras").is_visible()
+            seen = seek(page, 11.0)
+            assert len(seen["plots"]) >= 5
+            assert f"{at(windy, 'tension', 11.0)[0]:.0f}" in seen["flights"][0]["readout"][0]
+            assert dict(map(tuple, seen["plots"][0]["shown"])).keys() <= {"", "A", "B"}
+            page.keyboard.press("Space")
+            wait(page, "tethership.state().time > 11.3")
+    blind.close()
+
+
+def test_the_keyboard_reaches_every_control_and_shows_where_it_is(chromium, folder):
+    with opened(chromium, folder / "one.html") as page:
+        seek(page, 5.0)
+        reached = []
+        while len(reached) < 8:
+            page.keyboard.press("Tab")
+            if page.evaluate("document.activeElement.id") == "plots":
+                continue  # where the histories are longer than the window, they can be scrolled by keys
+            reached.append(page.evaluate("document.activeElement.dataset.camera ?? document.activeElement.id"))
+            look = page.evaluate("getComputedStyle(document.activeElement).outlineStyle + document.activeElement.id")
+            assert look.startswith("solid")
+        assert reached == ["play", "time", "speed", "north", "east", "top", "three-quarter", "chase"]
+        page.keyboard.press("Space")  # presses the button that has the focus, and does not play
+        settle(page)
+        assert state(page)["camera"] == "chase"
+        assert not state(page)["playing"]
 
 
 def first_centre(flight, time):

@@ -18,7 +18,8 @@ from tethership.analysis.events import find_events
 from tethership.analysis.mode_names import slots_of
 from tethership.analysis.tracking import eigen_path, follow, named_order, partners_of
 from tethership.view.interactive import interactive_root_locus, write_page
-from tethership.view.root_locus import display
+from tethership.view.mode_names import ANNOTATION
+from tethership.view.root_locus import SLOWEST, display
 
 STATES = ("q", "u", "north")
 """In the order of their modes: pitch subsidence, surge, north."""
@@ -276,11 +277,29 @@ def test_a_reference_that_cannot_be_trimmed_is_not_marked(found):
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["1 of 3 points: no trim"]
 
 
+def test_every_mode_is_named_beside_its_track(found):
+    """Without hovering, which a finger and a print cannot; the slow ones where they are drawn larger."""
+    figure = interactive_root_locus(found)
+    names = [note for note in figure.layout.annotations if note.name == ANNOTATION]
+    middle = int(np.flatnonzero(found.trimmed)[found.trimmed.sum() // 2])
+    roots = {note.text: complex(note.x, note.y) for note in names}
+    named = [(n, found.track(t)[middle]) for n, t in zip(found.names_at(middle), found.tracks, strict=True)]
+    upper = {name: root for name, root in named if root.imag >= 0}
+    assert roots.keys() == upper.keys() == set(found.names_at(middle))
+    assert len(names) == len(roots)
+    for note in names:
+        assert roots[note.text] == pytest.approx(upper[note.text], abs=1e-12)
+        assert note.xref == ("x2" if abs(roots[note.text]) < SLOWEST else "x")
+    explained = [trace.name for trace in figure.data if trace.showlegend]
+    assert explained == ["reference"]
+
+
 def test_hover_tells_parameter_eigenvalue_and_mode(found):
     figure = interactive_root_locus(found, "Title of mine", parameter="trim.elongation")
     assert isinstance(figure, go.Figure)
     assert figure.layout.title.text == "Title of mine"
-    assert [note.text for note in figure.layout.annotations] == ["all modes", "slow modes"]
+    titles = [note.text for note in figure.layout.annotations if note.name != ANNOTATION]
+    assert titles == ["all modes", "slow modes"]
     panel = [trace for trace in figure.data if trace.xaxis == "x"]  # the second one has the same data, zoomed
     assert len(figure.data) == 2 * len(panel)
     traces = {trace.name: trace for trace in panel}

@@ -2,6 +2,7 @@
 
 import os
 import sys
+import tempfile
 import webbrowser
 from pathlib import Path
 from typing import Annotated
@@ -14,6 +15,12 @@ from tethership.errors import ConfigError
 EXAMPLE = "Example: tethership explore docking --port 8050"
 
 LOOPBACK = ("127.0.0.1", "localhost")
+
+DOOR = """<!doctype html>
+<html lang="en"><meta charset="utf-8"><title>tethership explore</title>
+<meta http-equiv="refresh" content="0; url={address}"><p><a href="{address}">Open the explorer</a></p></html>
+"""
+"""Leads a browser to the page."""
 
 
 def explore(
@@ -29,7 +36,8 @@ def explore(
 ) -> None:
     """Serve a local page: change numbers, see trim, root locus and flight; Ctrl-C ends it.
 
-    With --json one object with the address is printed once the page is served.
+    The address holds a token; who does not have it is refused. With --json one object with the address, and for a
+    script the server and its cookie, is printed once the page is served.
     """
     if host not in LOOPBACK:
         raise ConfigError(f"--host {host}: the page is served to this machine alone; leave --host out")
@@ -40,14 +48,16 @@ def explore(
 
     def ready() -> None:
         if json:
-            print_json({"address": explorer.address, "folder": str(explorer.folder), "pid": os.getpid()})
+            said = {"address": explorer.address, "server": explorer.base, "cookie": explorer.ticket.cookie}
+            print_json({**said, "folder": str(explorer.folder), "pid": os.getpid()})
         else:
             typer.echo(f"tethership explore: {explorer.address} (files in {explorer.folder}; Ctrl-C ends it)")
         sys.stdout.flush()
-        if not no_open and not _opened(explorer.address):
+        if not no_open and not _opened(explorer.address, Path(private)):
             typer.echo(f"tethership: no browser was found; open {explorer.address} yourself", err=True)
 
-    serve_until_signal(explorer, ready)
+    with tempfile.TemporaryDirectory(prefix="tethership-") as private:
+        serve_until_signal(explorer, ready)
 
 
 def _placed(scenario: str, folder: Path | None) -> tuple[str, Path]:
@@ -62,12 +72,20 @@ def _placed(scenario: str, folder: Path | None) -> tuple[str, Path]:
     return path.name, folder
 
 
-def _opened(address: str) -> bool:
-    """Return whether a browser with a window was found and told to open the page."""
+def _opened(address: str, private: Path) -> bool:
+    """Return whether a browser with a window was found and told to open the page.
+
+    The token is not given to it on its command line, which every user of the machine can read, but in a file of a
+    private folder that leads to the page.
+    """
     windowless = sys.platform.startswith("linux") and not (
         os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
     )
+    if windowless:
+        return False
+    door = private / "open_explorer.html"
+    door.write_text(DOOR.format(address=address), encoding="utf-8")
     try:
-        return not windowless and webbrowser.open(address)
+        return webbrowser.open(door.as_uri())
     except (webbrowser.Error, OSError):
         return False

@@ -4,7 +4,7 @@ from importlib import resources
 from typing import Any
 
 import dash
-from dash import ALL, MATCH, Dash, Input, Output, State, ctx, no_update
+from dash import ALL, MATCH, Dash, Input, Output, Patch, State, ctx, no_update
 
 from tethership._version import __version__
 from tethership.errors import TethershipError
@@ -88,15 +88,21 @@ def _panel_callbacks(app: Dash, known: Understanding) -> None:
         Output("extra", "children", allow_duplicate=True),
         Input("more", "value"),
         State("scenario", "value"),
-        State("extra", "children"),
         State(TEXTS, "id"),
         prevent_initial_call=True,
     )
-    def add(name: str | None, scenario: str, shown: list[Any], present: list[dict[str, str]]) -> Any:
+    def add(name: str | None, scenario: str, present: list[dict[str, str]]) -> Any:
         if not name or name in [entry["name"] for entry in present]:
             return no_update
-        parameter = known_parameters(known.base(scenario).config).get(name)
-        return no_update if parameter is None else [*shown, field(extra_field(parameter))]
+        try:
+            parameter = known_parameters(known.base(scenario).config).get(name)
+        except TethershipError:
+            return no_update
+        if parameter is None:
+            return no_update
+        shown = Patch()
+        shown.append(field(extra_field(parameter)))
+        return shown
 
     @app.callback(
         Output("low", "value"),
@@ -117,7 +123,7 @@ def _panel_callbacks(app: Dash, known: Understanding) -> None:
 
 
 def _browser_callbacks(app: Dash) -> None:
-    """Let the page itself do what needs no answer: slider and text, marks, tabs, downloads."""
+    """Let the page itself do what needs no answer: slider and text, marks, tabs, room for figures, downloads."""
     app.clientside_callback(
         dash.ClientsideFunction("explorer", "follow"),
         Output(TEXT, "value"),
@@ -132,6 +138,13 @@ def _browser_callbacks(app: Dash) -> None:
         Input(TEXTS, "value"),
         State(FIELDS, "data-own"),
     )
+    for view in VIEWS:
+        app.clientside_callback(
+            dash.ClientsideFunction("explorer", "fit"),
+            Output({"figure": view}, "figure"),
+            Input({"plain": view}, "data"),
+            prevent_initial_call=True,
+        )
     app.clientside_callback(
         dash.ClientsideFunction("explorer", "show"),
         *[Output({"section": view}, "style") for view in VIEWS],
@@ -157,10 +170,10 @@ def _save_callback(app: Dash, known: Understanding, desk: Desk) -> None:
         State("shown", "data"),
         prevent_initial_call=True,
     )
-    def save(clicks: int | None, name: str, shown: dict[str, str]) -> Any:
-        if not clicks:
+    def save(clicks: int | None, name: str, shown: dict[str, str] | None) -> Any:
+        if not clicks or not shown or not ctx.triggered_id:
             return no_update
-        view = dict(ctx.triggered_id or {}).get("view", "")
+        view = ctx.triggered_id["view"]
         request = desk.find(lambda one: one.view == view and request_key(one) == shown.get(view))
         if request is None:
             return "This is no longer kept; change something or compute again."

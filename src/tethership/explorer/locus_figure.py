@@ -8,18 +8,13 @@ import plotly.graph_objects as go
 from tethership.analysis import Modes, Sweep
 from tethership.explorer.plain import plain_figure
 from tethership.view import style
-from tethership.view.interactive import interactive_root_locus
+from tethership.view.interactive import REFERENCE, interactive_root_locus
+from tethership.view.mode_names import ANNOTATION, mode_names
 from tethership.view.root_locus import SLOWEST
 
 HOVER = "<b>%{text}</b><br>chosen scenario<br>λ = %{x:.5f} %{y:+.5f}i 1/s<extra></extra>"
 
 HEIGHT = 520
-
-SHIFTS = (14, -15, 28, -29)
-"""Where a name may stand above its star [px]; the first that is free."""
-
-NEAR = (0.3, 0.12)
-"""Shares of the panel's width and height within which two names would meet."""
 
 
 def locus_figure(found: Sweep, own: Modes | None) -> dict[str, Any]:
@@ -33,13 +28,15 @@ def locus_figure(found: Sweep, own: Modes | None) -> dict[str, Any]:
         Of the chosen scenario, which need not lie on the sweep; none without equilibrium.
     """
     figure = interactive_root_locus(found, "")
-    figure.data = [trace for trace in list[Any](figure.data) if trace.name != "reference"]
+    figure.data = [trace for trace in list[Any](figure.data) if trace.name != REFERENCE]
     if own is not None:
+        figure.layout.annotations = [one for one in list[Any](figure.layout.annotations) if one.name != ANNOTATION]
         for axis in ("", "2"):
             figure.add_trace(_stars(own, axis))
             _names(figure, found, own, axis)
     figure.update_layout(
         title=None,
+        showlegend=False,
         height=HEIGHT,
         margin={"l": 60, "r": 20, "t": 36, "b": 50},
         uirevision=f"{found.scenario.name} {', '.join(found.values)}",
@@ -70,14 +67,6 @@ def _names(figure: go.Figure, found: Sweep, own: Modes, axis: str) -> None:
     slow = axis == "2"
     drawn = np.concatenate([found.eigenvalues[found.trimmed].ravel(), own.eigenvalues])
     drawn = drawn[np.abs(drawn) < SLOWEST] if slow else drawn
-    width, height = (max(float(np.ptp(part)), 1e-9) for part in (drawn.real, drawn.imag))
-    placed: list[tuple[float, float, int]] = []
-    modes = [mode for mode in own.modes if (abs(mode.eigenvalue) < SLOWEST) == slow]
-    for mode in sorted(modes, key=lambda mode: mode.eigenvalue.real):
-        x, y = mode.eigenvalue.real, mode.eigenvalue.imag
-        near = {s for u, v, s in placed if abs(u - x) < NEAR[0] * width and abs(v - y) < NEAR[1] * height}
-        shift = next((shift for shift in SHIFTS if shift not in near), SHIFTS[0])
-        placed.append((x, y, shift))
-        figure.add_annotation(
-            x=x, y=y, text=mode.name, xref=f"x{axis}", yref=f"y{axis}", showarrow=False, yshift=shift, font={"size": 11}
-        )
+    modes = [(mode.name, mode.eigenvalue) for mode in own.modes if (abs(mode.eigenvalue) < SLOWEST) == slow]
+    for name in mode_names(modes, drawn, axis):
+        figure.add_annotation(name)

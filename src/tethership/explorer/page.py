@@ -6,7 +6,7 @@ from typing import Any
 
 from dash import dcc, html
 
-from tethership.explorer.panel import panel
+from tethership.explorer.panel import LONGEST, grouped, panel
 from tethership.scenario import Scenario
 
 VIEWS = {"trim": "Trim", "locus": "Root locus", "flight": "Flight"}
@@ -51,10 +51,12 @@ def page(scenario: Scenario, name: str, names: Sequence[str], folder: str, versi
                 [
                     html.Aside(
                         [
+                            html.A("Results ↑", href="#results", className="jump"),
                             html.Div(panel(scenario), id="panel"),
                             html.Details(
                                 [
                                     html.Summary("Any other number"),
+                                    html.Label("its name", htmlFor="more", className="name"),
                                     dcc.Dropdown(
                                         id="more",
                                         options=[],
@@ -69,18 +71,23 @@ def page(scenario: Scenario, name: str, names: Sequence[str], folder: str, versi
                             ),
                         ],
                         className="panel",
+                        id="numbers",
                     ),
                     html.Main(
                         [
-                            dcc.RadioItems(
-                                id="tab",
-                                value="trim",
-                                options=[{"label": words, "value": view} for view, words in VIEWS.items()],
-                                className="tabs",
+                            grouped(
+                                "what is shown",
+                                dcc.RadioItems(
+                                    id="tab",
+                                    value="trim",
+                                    options=[{"label": words, "value": view} for view, words in VIEWS.items()],
+                                    className="tabs",
+                                ),
                             ),
                             html.Div("", id="trouble", className="trouble", role="alert"),
                             *(_view(view) for view in VIEWS),
-                        ]
+                        ],
+                        id="results",
                     ),
                 ],
                 className="body",
@@ -106,6 +113,7 @@ def _header(name: str, names: Sequence[str]) -> html.Header:
                 ],
                 className="state",
             ),
+            html.A("Numbers ↓", href="#numbers", className="jump"),
             html.Button("Cancel", id="cancel", disabled=True),
             html.Button("Compute again", id="again", disabled=True),
         ]
@@ -121,6 +129,7 @@ def _view(view: str) -> html.Section:
             html.Div(
                 [
                     html.Div(html.P(FIRST, className="asked"), id={"head": view}),
+                    dcc.Store(id={"plain": view}),
                     dcc.Graph(id={"figure": view}, figure=EMPTY, config=GRAPH, className="figure"),
                     html.Div([], id={"rest": view}),
                 ],
@@ -139,6 +148,7 @@ def _span() -> html.Div:
     entries: list[Any] = [html.Label("over", htmlFor="over")]
     entries.append(dcc.Dropdown(id="over", options=[], value="wind.speed", clearable=False, className="over"))
     for name, words in (("low", "from"), ("high", "to"), ("points", "points")):
-        entries += [html.Label(words), dcc.Input(id=name, value="", type="text", debounce=True, className="number")]
+        box = dcc.Input(id=name, value="", type="text", debounce=True, className="number", maxLength=LONGEST)
+        entries += [html.Label(words, htmlFor=name), box]
     entries.append(html.Span("", id="over-unit", className="unit"))
     return html.Div(entries, className="options")

@@ -1,9 +1,11 @@
 """The panel of numbers: fields in groups, texts with units and, for the main ones, sliders. Depends on: dash."""
 
+import json
 from typing import Any
 
 from dash import dcc, html
 
+from tethership.explorer.choice import FORMULATIONS
 from tethership.explorer.fields import Field, groups
 from tethership.scenario import Scenario
 from tethership.scenario.control_schema import LAYERS
@@ -11,7 +13,8 @@ from tethership.scenario.control_schema import LAYERS
 OPEN = ("Air", "Trim", "Cable")
 """Groups that are open at first."""
 
-MARKS = 5
+LONGEST = 100
+"""Characters of a number, its unit, or a name of a file at most."""
 
 
 def panel(scenario: Scenario) -> list[Any]:
@@ -30,28 +33,40 @@ def _group(title: str, rows: list[Field]) -> html.Details:
     )
 
 
+def dom_id(place: dict[str, str]) -> str:
+    """Return an id of several parts as it stands in the page, for labels to point to."""
+    return json.dumps(place, sort_keys=True, separators=(",", ":"))
+
+
+def grouped(words: str, switches: Any) -> html.Div:
+    """Return switches that belong together, with words for those who do not see that they do."""
+    return html.Div(switches, role="group", **{"aria-label": words})  # pyright: ignore[reportArgumentType]
+
+
 def field(entry: Field) -> html.Div:
     """Return one number: label, text, unit, slider."""
+    place = {"name": entry.name, "part": "text", "kind": "plain" if entry.span is None else "main"}
     text = dcc.Input(
-        id={"name": entry.name, "part": "text", "kind": "plain" if entry.span is None else "main"},
+        id=place,
         value=entry.text,
         type="text",
         debounce=True,
         autoComplete="off",
         spellCheck="false",
         className="number",
+        maxLength=LONGEST,
     )
     row = html.Div(
         [
-            html.Label(entry.label, title=entry.name, className="name"),
+            html.Label(entry.label, title=entry.name, className="name", htmlFor=dom_id(place)),
             text,
             html.Span("" if entry.unit == "1" else entry.unit, className="unit"),
         ],
         className="row",
     )
-    place: Any = {"id": {"name": entry.name, "part": "field"}, "data-own": entry.text, "className": "field"}
+    whole: Any = {"id": {"name": entry.name, "part": "field"}, "data-own": entry.text, "className": "field"}
     if entry.span is None:
-        return html.Div(row, **place)
+        return html.Div(row, **whole)
     low, high = entry.span
     slider = dcc.Slider(
         id={"name": entry.name, "part": "slider", "kind": "main"},
@@ -65,7 +80,7 @@ def field(entry: Field) -> html.Div:
         included=False,
         className="slider",
     )
-    return html.Div([row, slider], **place)
+    return html.Div([row, slider], **whole)
 
 
 def _step(width: float) -> float:
@@ -83,12 +98,15 @@ def _laws(scenario: Scenario) -> html.Details:
     return html.Details(
         [
             html.Summary("Control and model"),
-            dcc.Checklist(
-                id="layers",
-                options=[{"label": name, "value": name, "disabled": not has_cable} for name in LAYERS],
-                value=[name for name in LAYERS if name in control.layers],
-                inline=True,
-                className="switches",
+            grouped(
+                "control layers",
+                dcc.Checklist(
+                    id="layers",
+                    options=[{"label": name, "value": name, "disabled": not has_cable} for name in LAYERS],
+                    value=[name for name in LAYERS if name in control.layers],
+                    inline=True,
+                    className="switches",
+                ),
             ),
             dcc.Checklist(
                 id="sas",
@@ -96,11 +114,14 @@ def _laws(scenario: Scenario) -> html.Details:
                 value=["sas"] if control.sas else [],
                 className="switches",
             ),
-            dcc.RadioItems(
-                id="formulation",
-                options=[{"label": f"{name} hull and cable", "value": name} for name in ("consistent", "published")],
-                value=scenario.formulation,
-                className="switches",
+            grouped(
+                "formulation",
+                dcc.RadioItems(
+                    id="formulation",
+                    options=[{"label": f"{name} hull and cable", "value": name} for name in FORMULATIONS],
+                    value=scenario.formulation,
+                    className="switches",
+                ),
             ),
         ],
         open=True,

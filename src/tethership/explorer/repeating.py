@@ -4,7 +4,9 @@ from typing import Any
 
 from dash import dcc, html
 
+from tethership.errors import ConfigError
 from tethership.explorer.desk import Request
+from tethership.explorer.panel import LONGEST, dom_id
 from tethership.explorer.understanding import Understanding
 
 
@@ -22,8 +24,12 @@ def recipe(view: str, request: Request, known: Understanding) -> html.Details:
     """
     stem = request.choice.scenario.removesuffix(".toml")
     name = f"{stem}_explored.toml" if request.choice.values else f"{stem}_copy.toml"
-    text = known.file_text(request)
+    try:
+        text = known.file_text(request)
+    except ConfigError as error:
+        return _command_alone(view, request, known, str(error))
     own = request.choice.scenario.endswith(".toml")
+    place = {"view": view, "part": "file-name"}
     beside = " Keep it in the same folder: it may name files beside it." if own else ""
     return html.Details(
         [
@@ -37,7 +43,8 @@ def recipe(view: str, request: Request, known: Understanding) -> html.Details:
             html.Div(
                 [
                     html.Button("Download", id={"view": view, "part": "download"}),
-                    dcc.Input(id={"view": view, "part": "file-name"}, value=name, type="text", className="file-name"),
+                    html.Label("file name", htmlFor=dom_id(place), className="unit"),
+                    dcc.Input(id=place, value=name, type="text", className="file-name", maxLength=LONGEST),
                     html.Button("Save in the folder", id={"view": view, "part": "save"}),
                     html.Span("", id={"view": view, "part": "saved"}, className="saved", role="status"),
                 ],
@@ -48,6 +55,13 @@ def recipe(view: str, request: Request, known: Understanding) -> html.Details:
         className="recipe",
         id={"disclosure": view},
     )
+
+
+def _command_alone(view: str, request: Request, known: Understanding, reason: str) -> html.Details:
+    """Return the disclosure where no file can be written, and why."""
+    command = _copied(f"command-{view}", "\n".join(known.commands(request)), "copied short")
+    summary = html.Summary("Show the command that gives this")
+    return html.Details([summary, command, html.P(f"No file: {reason}")], className="recipe", id={"disclosure": view})
 
 
 def _copied(name: str, text: str, style: str) -> Any:

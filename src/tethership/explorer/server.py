@@ -9,13 +9,13 @@ from collections.abc import Callable
 from pathlib import Path
 from types import FrameType
 
-from werkzeug.serving import BaseWSGIServer, make_server
-
 from tethership.errors import ConfigError
 from tethership.explorer.app import make_app
+from tethership.explorer.connections import Server
 from tethership.explorer.desk import Desk
 from tethership.explorer.folder import Folder
 from tethership.explorer.guard import guard
+from tethership.explorer.ticket import PARAMETER, Ticket
 from tethership.explorer.understanding import Understanding
 from tethership.explorer.worker import Worker
 
@@ -48,16 +48,20 @@ class Explorer:
         self.folder = known.folder.root
         self.desk = Desk(Worker())
         app = make_app(known, self.desk, scenario)
-        guard(app.server, self.port, list(app.csp_hashes()))
+        self.ticket, self.callbacks = Ticket(self.port), app.callback_map
+        guard(app.server, self.port, list(app.csp_hashes()), self.ticket, self.callbacks)
         logging.getLogger("werkzeug").setLevel(logging.ERROR)
-        self._server: BaseWSGIServer = make_server(
-            LOOPBACK, self.port, app.server, threaded=True, fd=listening.fileno()
-        )
+        self._server = Server(LOOPBACK, self.port, app.server, fd=listening.fileno())
         listening.close()
 
     @property
     def address(self) -> str:
-        """Where a browser finds it."""
+        """Where a browser finds it, with the token that lets it in."""
+        return f"{self.base}/?{PARAMETER}={self.ticket.token}"
+
+    @property
+    def base(self) -> str:
+        """The same for a client that has the cookie."""
         return f"http://{LOOPBACK}:{self.port}"
 
     def serve(self) -> None:

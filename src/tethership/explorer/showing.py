@@ -45,7 +45,7 @@ class Showing:
             for view in VIEWS
             for part, prop in (
                 ("head", "children"),
-                ("figure", "figure"),
+                ("plain", "data"),
                 ("figure", "style"),
                 ("rest", "children"),
                 ("recipe", "children"),
@@ -87,15 +87,19 @@ class Showing:
         try:
             form = form_of(scenario, names, texts, layers, sas, formulation)
             request = self.known.request(view, form, (over or "", low or "", high or "", points or ""))
+            return self._page(view, self._standing(str(client), request), shown)
         except TethershipError as error:
             return self._trouble(view, str(error), shown)
+
+    def _standing(self, client: str, request: Request) -> Standing:
+        """Ask for a request, anew or no more where that was clicked, and return how it stands."""
         if ctx.triggered_id == "again":
             self.desk.forget(request)
-        standing = self.desk.ask(str(client), request)
+        standing = self.desk.ask(client, request)
         if ctx.triggered_id == "cancel":
-            self.desk.cancel(str(client))
-            standing = self.desk.ask(str(client), request)
-        return self._page(view, standing, shown)
+            self.desk.cancel(client)
+            standing = self.desk.ask(client, request)
+        return standing
 
     def _trouble(self, view: str, words: str, shown: dict[str, str]) -> tuple[Any, ...]:
         """Return the page for wrong input: what is shown stays, marked as old."""

@@ -27,9 +27,6 @@ CURVE_POINTS = 25
 
 HEIGHT = 330
 
-LACKING = "#D55E00"
-"""A thruster that is asked for more than it has: vermilion."""
-
 
 @eqx.filter_jit
 def _curves(plant: TetheredAirship, state: State) -> Float[Array, "cables 25 3"]:
@@ -116,12 +113,18 @@ def _throttles(figure: go.Figure, scenario: Scenario, point: TrimPoint) -> None:
     """Draw the throttles between their limits."""
     names = [thruster.name for thruster in scenario.config.vehicle.thrusters]
     values = np.asarray(point.command.throttle)
-    colours = [LACKING if name in point.saturated else style.CABLES[0] for name in names]
+    lacking = [name in point.saturated for name in names]
+    looks = {
+        "color": [style.LACKING if lacks else style.SERIES[0] for lacks in lacking],
+        "pattern": {"shape": ["/" if lacks else "" for lacks in lacking], "fgcolor": "#FFFFFF"},
+    }
     bars = go.Bar(
         x=values.tolist(),
         y=[name.replace("_", "<br>") for name in names],
         orientation="h",
-        marker={"color": colours},
+        marker=looks,
+        text=["more than there is" if lacks else "" for lacks in lacking],
+        textposition="auto",
         hovertemplate="%{y}: %{x:.4f} of nominal<extra></extra>",
     )
     figure.add_trace(bars, row=1, col=3)

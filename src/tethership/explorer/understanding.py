@@ -45,6 +45,7 @@ class Understanding:
 
     def base(self, name: str) -> Scenario:
         """Return a scenario without changes, read again where its file was edited; errors as `Folder.load`."""
+        self.folder.located(name)
         return self._load(name, self.folder.stamp(name))
 
     def request(self, view: str, form: Form, span: tuple[str, str, str, str]) -> Request:
@@ -133,7 +134,15 @@ def _around(parameter: Parameter) -> tuple[float, float]:
 
 
 def form_of(scenario: str, names: list[Any], texts: list[Any], layers: Any, sas: Any, formulation: Any) -> Form:
-    """Return what the page says as a form; nothing that was typed stands for the scenario's own."""
+    """Return what the page says as a form; nothing that was typed stands for the scenario's own.
+
+    Raises
+    ------
+    ConfigError
+        There are texts without a name, or names without a text.
+    """
+    if len(names) != len(texts):
+        raise ConfigError("the page lacks some of its fields; reload the page")
     typed_texts = {
         str(name["name"]): str(text) for name, text in zip(names, texts, strict=True) if str(text or "").strip()
     }

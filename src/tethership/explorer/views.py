@@ -190,4 +190,5 @@ def _grid(title: str, header: Sequence[str], rows: Sequence[Sequence[str]], word
     sides = ["" if index in words else "n" for index in range(len(header))]
     head = html.Tr([html.Th(text, className=side, scope="col") for text, side in zip(header, sides, strict=True)])
     body = [html.Tr([html.Td(text, className=s) for text, s in zip(row, sides, strict=True)]) for row in rows]
-    return html.Div([html.H3(title), html.Table([html.Thead(head), html.Tbody(body)])])
+    table = html.Table([html.Thead(head), html.Tbody(body)])
+    return html.Div([html.H3(title), html.Div(table, className="wide", tabIndex=0, **{"aria-label": title})])  # pyright: ignore[reportArgumentType]

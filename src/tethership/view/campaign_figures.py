@@ -14,7 +14,7 @@ from matplotlib.ticker import PercentFormatter
 
 from tethership.view import style
 
-COLOURS = style.CABLES
+COLOURS = style.SERIES
 """One colour a law."""
 
 WIDTH = 7.6

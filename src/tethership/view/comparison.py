@@ -18,6 +18,7 @@ from tethership.view import style
 from tethership.view.ground_box import GroundBox, box_around, draw_box
 from tethership.view.projection import View
 from tethership.view.ship import ship_outlines
+from tethership.view.ship_key import ship_keys
 from tethership.view.snapshots import Snapshots, snapshot_indices, take_snapshots
 
 Array = NDArray[np.float64]
@@ -44,8 +45,9 @@ SHADOW = "#5C4A32"
 def plot_comparison(flights: Mapping[str, Flight], title: str = "Trajectories compared") -> Figure:
     """Draw flights side by side, in parallel three-quarter views of one scale, as Fig. 15 of Riboldi et al.
 
-    In each view the ship and its cables every 4 s (if a flight is longer than 2 min: 8 s, 16 s, …), the first green,
-    the last red, cables dashed blue; the path of the centre of buoyancy B in red, and its shadow on the ground brown.
+    In each view the ship and its cables every 4 s (if a flight is longer than 2 min: 8 s, 16 s, …), the first dark
+    green and dashed, the last crimson, cables dashed blue; the path of the centre of buoyancy B in crimson, and its
+    shadow on the ground brown.
 
     Parameters
     ----------
@@ -176,7 +178,13 @@ def _draw_ships(axes: Axes, snapshots: Snapshots, view: View) -> None:
     ):
         polygons = [polygon for i in chosen for polygon in outlines[i]]
         ships = PolyCollection(
-            polygons, edgecolors=colour, facecolors=to_rgba(colour, fill), linewidths=width, zorder=3, gid=gid
+            polygons,
+            edgecolors=colour,
+            facecolors=to_rgba(colour, fill),
+            linewidths=width,
+            linestyles=style.START_LINE if gid == "start" else "-",
+            zorder=3,
+            gid=gid,
         )
         axes.add_collection(ships, autolim=False)
 
@@ -189,7 +197,7 @@ def _draw_cable(axes: Axes, snapshots: Snapshots, cable: int, view: View) -> Non
         list(view.project(curves)),
         colors=colour,
         linewidths=0.9,
-        linestyles=(0, (4, 2)),
+        linestyles=style.cable_line(cable),
         zorder=4,
         gid=f"cable {cable}",
     )
@@ -220,18 +228,13 @@ def _head(figure: Figure, title: str, snapshots: Snapshots) -> None:
     left = 0.19 / width
     figure.text(left, 1.0 - 0.24 / height, title, fontsize=style.FONT + 4, weight="bold", color=style.INK, va="center")
 
-    def ship(colour: str, label: str) -> Patch:
-        return Patch(facecolor=(colour, 0.22), edgecolor=colour, linewidth=1.2, label=label)
-
     handles: list[Patch | Line2D] = [
-        ship(style.START, "start"),
-        ship(style.BETWEEN, f"every {snapshots.interval:g} s"),
-        ship(style.END, "end"),
+        *ship_keys(snapshots.interval),
         Line2D([], [], color=style.END, linewidth=1.3, label="centre of buoyancy B"),
         Line2D([], [], color=SHADOW, linewidth=1.0, label="its shadow"),
     ]
     if snapshots.cables:
-        dashes = (0, (4, 2))
+        dashes = style.cable_line(0)
         handles.append(Line2D([], [], color=style.cable_colour(0), linewidth=1.0, linestyle=dashes, label="cable"))
         handles.append(Line2D([], [], color=style.INK, marker="^", linestyle="none", label="anchor"))
     figure.legend(

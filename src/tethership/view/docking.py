@@ -9,6 +9,7 @@ from tethership.simulation import Flight
 from tethership.view import style
 from tethership.view.histories import draw_histories
 from tethership.view.projection import FROM_EAST, FROM_NORTH, FROM_TOP
+from tethership.view.ship_key import ship_keys
 from tethership.view.snapshots import Snapshots, take_snapshots
 from tethership.view.trajectory import draw_view
 from tethership.view.words import flown_words
@@ -27,10 +28,10 @@ def plot_docking(flight: Flight, figure: Figure | None = None, title: str | None
     """Draw a docking flight as the four panels of Fig. 12 of Riboldi et al.
 
     Seen from north (top left; east is on the left), from east (top right; north is on the right) and from the top
-    (bottom right), all with equal scales in metres: the ship every 4 s (longer flights: 8 s, 16 s, …), green at the
-    start and red at the end, cables dashed, the path of the centre of buoyancy B red. Bottom left, against time [s]:
-    cable length and distance of tether point and anchor [m], tension at the tether point [N] with the limits watched,
-    rewind rate [m/s]; dots are the snapshots, gusts are shaded.
+    (bottom right), all with equal scales in metres: the ship every 4 s (longer flights: 8 s, 16 s, …), dark green and
+    dashed at the start, crimson at the end, cables dashed, the path of the centre of buoyancy B crimson. Bottom left,
+    against time [s]: cable length and distance of tether point and anchor [m], tension at the tether point [N] with the
+    limits watched, rewind rate [m/s]; dots are the snapshots, gusts are shaded.
 
     Parameters
     ----------
@@ -97,18 +98,12 @@ def _title(figure: Figure, snapshots: Snapshots, title: str | None) -> None:
 
 def _legend(figure: Figure, snapshots: Snapshots) -> None:
     """Explain the views in one row below the title."""
-
-    def ship(colour: str, label: str) -> Patch:
-        return Patch(facecolor=(colour, 0.22), edgecolor=colour, linewidth=1.2, label=label)
-
     handles: list[Patch | Line2D] = [
-        ship(style.START, "start"),
-        ship(style.BETWEEN, f"every {snapshots.interval:g} s"),
-        ship(style.END, "end"),
+        *ship_keys(snapshots.interval),
         Line2D([], [], color=style.END, linewidth=1.3, label="centre of buoyancy B"),
     ]
     handles += [
-        Line2D([], [], color=style.cable_colour(i), linewidth=1.0, linestyle=(0, (4, 2)), label=label)
+        Line2D([], [], color=style.cable_colour(i), linewidth=1.0, linestyle=style.cable_line(i), label=label)
         for i, label in enumerate(_cable_labels(snapshots.cables))
     ]
     if snapshots.cables:

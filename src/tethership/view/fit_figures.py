@@ -24,9 +24,9 @@ def plot_marginals(fit: dict[str, Any]) -> Figure:
     generator = np.random.default_rng(0)
     for row, unknown in enumerate(UNKNOWNS):
         low, high = np.percentile(members[:, row], [5.0, 95.0])
-        axes.plot([low, high], [row, row], color=style.CABLES[0], linewidth=6.0, alpha=0.35, solid_capstyle="round")
+        axes.plot([low, high], [row, row], color=style.SERIES[0], linewidth=6.0, alpha=0.35, solid_capstyle="round")
         jitter = row + generator.uniform(-0.18, 0.18, len(members))
-        axes.plot(members[:, row], jitter, ".", color=style.CABLES[0], markersize=2.5, alpha=0.6)
+        axes.plot(members[:, row], jitter, ".", color=style.SERIES[0], markersize=2.5, alpha=0.6)
         axes.plot(best[row], row, "D", color=style.END, markersize=5.0)
         for place, value in ((-0.015, unknown.low), (1.015, unknown.high)):
             side = "right" if place < 0 else "left"

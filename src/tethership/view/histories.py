@@ -58,7 +58,7 @@ def _draw_each(axes: Axes, snapshots: Snapshots, name: str, linestyle: LineStyle
             color=style.cable_colour(cable),
             linestyle=linestyle,
             linewidth=1.2,
-            marker="o" if dots else "",
+            marker=style.mark(cable) if dots else "",
             markersize=3.2,
             markevery=snapshots.indices.tolist(),
             label=label,

@@ -15,10 +15,16 @@ from tethership.analysis.sweep import Sweep
 from tethership.errors import ConfigError
 from tethership.reproduction import LinearFigure, Panel
 from tethership.view import style
+from tethership.view.mode_names import mode_names
 from tethership.view.root_locus import PANELS, SLOWEST, colour_parameter, display, own_point
 
 SPACING = 0.2
 """Room between two panels, for a colour bar and labels [share of the page]."""
+
+REFERENCE, UNTETHERED = "reference", "untethered"
+
+MARKS = (REFERENCE, UNTETHERED)
+"""Traces that the legend explains; modes are named beside their tracks."""
 
 HOVER = "<b>%{customdata[0]}</b><br>%{customdata[1]}<br>λ = %{customdata[2]} 1/s<extra>%{customdata[3]}</extra>"
 
@@ -63,14 +69,17 @@ def _assembled(panels: list[Panel], title: str) -> go.Figure:
     )
     for column, panel in enumerate(panels, start=1):
         for trace in _traces(panel, (1.0 - SPACING * (count - 1)) / count * column + SPACING * (column - 1)):
-            drawn.add_trace(trace, row=1, col=column)
+            drawn.add_trace(trace.update(showlegend=trace.name in MARKS and column == 1), row=1, col=column)
         drawn.update_xaxes(title_text="Re λ [1/s]", zeroline=True, zerolinecolor=style.INK, row=1, col=column)
         drawn.update_yaxes(title_text="Im λ [rad/s]", zeroline=True, zerolinecolor=style.INK, row=1, col=column)
+        for name in _named(panel, panels, "" if column == 1 else str(column)):
+            drawn.add_annotation(name)
         if panel.slow:
             limits = _slow_limits(panel)
             drawn.update_xaxes(range=limits[0], row=1, col=column)
             drawn.update_yaxes(range=limits[1], row=1, col=column)
-    drawn.update_layout(title=title, template="plotly_white", showlegend=False, hovermode="closest")
+    legend = {"orientation": "h", "x": 1.0, "xanchor": "right", "y": 1.06, "yanchor": "bottom"}
+    drawn.update_layout(title=title, template="plotly_white", legend=legend, hovermode="closest")
     return drawn
 
 
@@ -120,6 +129,26 @@ def _traces(panel: Panel, right: float) -> list[go.Scatter]:
     return traces + _marks(panel)
 
 
+def _named(panel: Panel, panels: list[Panel], axis: str) -> list[dict[str, Any]]:
+    """Return the names of a panel's modes at the middle of the sweep; of a pair once, at the upper member.
+
+    Modes that a panel of the slow ones shows larger are named there alone.
+    """
+    found = panel.sweep
+    points = np.flatnonzero(found.trimmed)
+    if not len(points):
+        return []
+    middle = int(points[len(points) // 2])
+    larger = any(other.slow and other.sweep is found for other in panels)
+    roots = found.eigenvalues[found.trimmed].ravel()
+    modes = []
+    for name, track in zip(found.names_at(middle), found.tracks, strict=True):
+        root = complex(found.track(track)[middle])
+        if root.imag >= 0.0 and ((abs(root) < SLOWEST) == panel.slow or not (panel.slow or larger)):
+            modes.append((name, root))
+    return mode_names(modes, roots[np.abs(roots) < SLOWEST] if panel.slow else roots, axis)
+
+
 def _note(found: Sweep, point: int) -> str:
     """Return the parameters of a point in words."""
     parts = []
@@ -136,7 +165,7 @@ def _marks(panel: Panel) -> list[go.Scatter]:
         roots: Complex = np.array([found.track(track)[panel.star] for track in found.tracks], dtype=np.complex128)
         marker = {"symbol": "star", "size": 13, "color": style.END}
         marks.append(
-            go.Scatter(x=roots.real, y=roots.imag, mode="markers", marker=marker, hoverinfo="skip", name="reference")
+            go.Scatter(x=roots.real, y=roots.imag, mode="markers", marker=marker, hoverinfo="skip", name=REFERENCE)
         )
     if panel.free is not None:
         modes = panel.free.modes
@@ -150,7 +179,7 @@ def _marks(panel: Panel) -> list[go.Scatter]:
                 mode="markers",
                 marker=marker,
                 text=names,
-                name="untethered",
+                name=UNTETHERED,
                 hovertemplate="<b>%{text}</b><br>untethered<br>λ = %{x:.5f} %{y:+.5f}i 1/s<extra></extra>",
             )
         )

@@ -42,9 +42,9 @@ def interactive_flight(flight: Flight, title: str | None = None) -> go.Figure:
     """Return a flight in space as a plotly figure, with a time slider.
 
     The ship and its cables move with the slider, every 1 s (flights longer than 1.5 min: 2 s, 4 s, …). What stays: the
-    path of the centre of buoyancy B in red, whose points tell time, place and tension; the ship at the start, green,
-    and at the end, red; the cables at the snapshots of `plot_docking`, thin; anchors; ground. East, north and altitude
-    [m] with equal scales. Numbers have four significant digits.
+    path of the centre of buoyancy B in crimson, whose points tell time, place and tension; the ship at the start, dark
+    green, and at the end, crimson; the cables at the snapshots of `plot_docking`, thin; anchors; ground. East, north
+    and altitude [m] with equal scales. Numbers have four significant digits.
 
     Parameters
     ----------

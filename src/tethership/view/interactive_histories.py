@@ -20,9 +20,6 @@ ROWS = ("tension [N]", "length [m]", "rewind rate [m/s]", "throttle [-]")
 BUCKETS = 400
 """Stretches of which the lowest and highest tension are kept."""
 
-THROTTLES = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9")
-"""Thrusters, in turn."""
-
 LOWEST = 0.1
 """Least tension shown [N]: the scale is logarithmic."""
 
@@ -57,16 +54,17 @@ def interactive_histories(flight: Flight, title: str | None = None) -> go.Figure
     )
     _add_cables(figure, snapshots, time, kept)
     for index, name in enumerate(snapshots.flight.data["thruster"].to_numpy()):
-        _add(figure, 4, time, snapshots.values("throttle")[kept, index], str(name), THROTTLES[index % len(THROTTLES)])
+        _add(figure, 4, time, snapshots.values("throttle")[kept, index], str(name), index)
     if snapshots.cables:
         _add_limits(figure, snapshots)
     _dress(figure, snapshots, snapshots.config.title if title is None else title)
     return figure
 
 
-def _add(figure: go.Figure, row: int, time: list[Any], values: Array, name: str, colour: str, dash: str = "") -> None:
+def _add(figure: go.Figure, row: int, time: list[Any], values: Array, name: str, series: int, dash: str = "") -> None:
     """Add a history to a row."""
-    line = {"color": colour, "width": 1.4, **({"dash": dash} if dash else {})}
+    dash = dash or ",".join(f"{part}px" for part in style.dash(series))
+    line = {"color": style.cable_colour(series), "width": 1.4, **({"dash": dash} if dash else {})}
     trace = go.Scatter(
         x=time,
         y=listed(values),
@@ -84,7 +82,7 @@ def _add_cables(figure: go.Figure, snapshots: Snapshots, time: list[Any], kept: 
     rows = (
         (1, "tension", "tension", ""),
         (2, "cable_length", "cable length", ""),
-        (2, "distance", "anchor to tether point", "dash"),
+        (2, "distance", "anchor to tether point", "dot"),
         (3, "rewind_rate", "rewind rate", ""),
     )
     for row, output, words, dash in rows:
@@ -92,7 +90,7 @@ def _add_cables(figure: go.Figure, snapshots: Snapshots, time: list[Any], kept: 
             values = snapshots.values(output)[kept, cable]
             values = np.maximum(values, LOWEST) if output == "tension" else values
             label = words if alone else f"{words}, {name}"
-            _add(figure, row, time, values, label, style.cable_colour(cable), dash)
+            _add(figure, row, time, values, label, cable, dash)
 
 
 def _add_limits(figure: go.Figure, snapshots: Snapshots) -> None:

@@ -24,8 +24,8 @@ def plot_line_comparison(case: Mapping[str, Any]) -> Figure:
     drawn = Figure(figsize=(9.0, 3.0), layout="constrained")
     whole, near = drawn.subplots(1, 2, width_ratios=(2.0, 1.0))
     for axes in (whole, near):
-        axes.plot(time, dynamic, color=style.CABLES[1], linewidth=1.0, label="dynamic line (MoorDyn)")
-        axes.plot(time, static, color=style.CABLES[0], linewidth=1.0, label="quasi-static, as flown")
+        axes.plot(time, dynamic, color=style.SERIES[1], linewidth=1.0, label="dynamic line (MoorDyn)")
+        axes.plot(time, static, color=style.SERIES[0], linewidth=1.0, label="quasi-static, as flown")
         axes.set_xlabel("time [s]", fontsize=style.FONT)
         axes.grid(color=style.GUIDE, linewidth=0.6)
         axes.tick_params(labelsize=style.SMALL)

@@ -69,9 +69,11 @@ def plot_loads(
     strengths = {name: float(np.sqrt(np.mean(load**2))) for name, load in loads.items()}
     ordered = sorted(loads, key=lambda name: -strengths[name])
     for place, name in enumerate(ordered):
-        dash = "-" if place < len(style.CABLES) else "--"
+        dashes = style.dash(place)
+        line = (0.0, tuple(0.7 * part for part in dashes)) if dashes else "-"
         label = f"{name.replace('_', ' ')}, rms {strengths[name]:.3g} {unit}"
-        axes.plot(time, loads[name], dash, color=style.cable_colour(place), linewidth=1.2, label=label, gid=name)
+        look = {"linestyle": line, "color": style.cable_colour(place), "linewidth": 1.2}
+        axes.plot(time, loads[name], label=label, gid=name, **look)
     _dress(axes, loads, component is None)
     of = "" if component is None else f"{component} component of "
     axes.set_ylabel(of + KINDS[kind], fontsize=style.FONT)

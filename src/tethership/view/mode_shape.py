@@ -37,7 +37,7 @@ PANEL = (4.4, 3.6)
 """Width and height of one mode in `plot_all_modes` [inch]."""
 
 EXPLAINED = (
-    "From green to red: half a period, or three half (or double) times of a mode that does not oscillate. "
+    "From dark green to crimson: half a period, or three half (or double) times of a mode that does not oscillate. "
     "Dashed: at rest. Blue: paths of nose and tail."
 )
 """What the lines are."""
@@ -226,7 +226,7 @@ def _draw(axes: Axes, mode: Mode, motion: Motion, view: View) -> None:
     path = np.exp(1j * PHASES) if mode.oscillates else np.linspace(1.0, 0.0, 25)
     ends = np.array([view.project(motion.ends(factor)[:2]) for factor in path])
     for i, label in enumerate(("nose", "tail")):
-        axes.plot(ends[:, i, 0], ends[:, i, 1], color=style.CABLES[0], linewidth=1.0, gid=label, zorder=4)
+        axes.plot(ends[:, i, 0], ends[:, i, 1], color=style.SERIES[0], linewidth=1.0, gid=label, zorder=4)
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel(f"{view.labels[0]}, seen {view.title}", fontsize=style.FONT)
     axes.set_ylabel(view.labels[1], fontsize=style.FONT)

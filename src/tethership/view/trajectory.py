@@ -62,7 +62,7 @@ def _draw_ships(axes: Axes, snapshots: Snapshots, view: View) -> Array:
     count = len(snapshots.indices)
     position = snapshots.values("position")
     polygons: list[Array] = []
-    edges, faces, widths = [], [], []
+    edges, faces, widths, lines = [], [], [], []
     for i in _order(count):
         colour, fill, width = style.BETWEEN, 0.08, 0.6
         if i in (0, count - 1):
@@ -72,10 +72,11 @@ def _draw_ships(axes: Axes, snapshots: Snapshots, view: View) -> Array:
         edges += [to_rgba(colour)] * len(outlines)
         faces += [to_rgba(colour, fill)] * len(outlines)
         widths += [width] * len(outlines)
-    axes.add_collection(
-        PolyCollection(polygons, edgecolors=edges, facecolors=faces, linewidths=widths, zorder=3, gid="ships"),
-        autolim=False,
+        lines += [style.START_LINE if i == 0 else "-"] * len(outlines)
+    ships = PolyCollection(
+        polygons, edgecolors=edges, facecolors=faces, linewidths=widths, linestyles=lines, zorder=3, gid="ships"
     )
+    axes.add_collection(ships, autolim=False)
     return np.concatenate(polygons)
 
 
@@ -87,7 +88,12 @@ def _draw_cables(axes: Axes, snapshots: Snapshots, view: View) -> list[Array]:
         curves = view.project(snapshots.curves[snapshots.indices, cable])
         colour = style.cable_colour(cable)
         lines = LineCollection(
-            list(curves), colors=colour, linewidths=0.9, linestyles=(0, (4, 2)), zorder=4, gid=f"cable {cable}"
+            list(curves),
+            colors=colour,
+            linewidths=0.9,
+            linestyles=style.cable_line(cable),
+            zorder=4,
+            gid=f"cable {cable}",
         )
         axes.add_collection(lines, autolim=False)
         anchor = curves[0, 0]

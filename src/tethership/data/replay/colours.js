@@ -6,15 +6,10 @@ const SCENE_COLOURS = {
   fin: "#b9c6d2",
   edge: "#5d6b78",
   thruster: "#3a3a3a",
-  thrust: "#009e73",
-  wind: "#33475b",
-  gust: "#c98a00",
   grid: "#cfc4b0",
   shadow: "#cbbfa8",
   staff: "#8a8272",
 };
-
-const TENSION_COLOURS = ["#56b4e9", "#0072b2", "#009e73", "#e69f00", "#d55e00", "#7a0019"];
 
 // Whether two flights watch different tensions.
 const limitsDiffer = (flights) => new Set(flights.map((flight) => JSON.stringify(flight.limits))).size > 1;
@@ -26,7 +21,8 @@ class TensionScale {
     const values = limits.map((limit) => limit.value).sort((a, b) => a - b);
     this.stops = [values[0] / 30, values[0] / 3, ...values];
     this.limits = values;
-    this.colours = this.stops.map((_, i) => new THREE.Color(TENSION_COLOURS[Math.min(i, TENSION_COLOURS.length - 1)]));
+    const { tension } = DATA.colours;
+    this.colours = this.stops.map((_, i) => new THREE.Color(tension[Math.min(i, tension.length - 1)]));
   }
 
   colour(tension) {

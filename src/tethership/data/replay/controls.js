@@ -45,7 +45,8 @@ class Controls {
     CAMERAS.forEach((camera, i) => {
       actions[String(i + 1)] = () => this.chooseCamera(camera.name);
     });
-    if (!(event.key in actions)) return;
+    const presses = event.key === " " && event.target instanceof HTMLButtonElement; // what has the focus is meant
+    if (presses || !(event.key in actions)) return;
     event.preventDefault();
     actions[event.key]();
   }

@@ -78,8 +78,10 @@ class Page {
     const boxes = makeStageBoxes(flights, same);
     document.body.classList.toggle("two", flights.length > 1);
     this.stages = [];
+    const Kind = canDrawInSpace() ? Stage : NoStage;
+    for (const name of ["cameras", "key"]) document.getElementById(name).hidden = Kind === NoStage;
     flights.forEach((flight, i) =>
-      this.stages.push(new Stage(boxes[i].querySelector(".view"), flight, this.tracks[i], shared)),
+      this.stages.push(new Kind(boxes[i].querySelector(".view"), flight, this.tracks[i], shared)),
     );
     this.readouts = flights.map((flight, i) => new Readout(boxes[i], flight, this.tracks[i], shared.scale));
     this.plots = new Plots(document.getElementById("plots"), flights, this.tracks, this.clock);
@@ -156,6 +158,7 @@ class Page {
       flights: this.stages.map(stageState),
       plots: this.plots.panels.map((panel) => ({
         title: panel.title,
+        range: panel.range,
         time: panel.plot.posToVal(panel.left, "x"),
         shown: panel.entries.map(({ one, value }) => [one.label, value.textContent]),
       })),
@@ -170,7 +173,7 @@ const start = () => {
   } catch (error) {
     const message = document.createElement("p");
     message.id = "failed";
-    message.textContent = `This page cannot be shown: ${error.message}. It needs a browser with WebGL 2.`;
+    message.textContent = `This page cannot be shown: ${error.message}. A current Firefox, Chromium or Safari shows it.`;
     document.body.replaceChildren(message);
     throw error;
   }

@@ -1,8 +1,10 @@
 // What is plotted: panels of series, each series a column of a flight's track.
 
-const FLIGHT_COLOURS = ["#0072b2", "#d55e00"];
-const SIX_COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#000000"];
-const CABLE_DASHES = [[], [7, 3], [2, 2], [8, 3, 2, 3]];
+const THIN = 1.25; // of lines [px]; those of a second flight are thick
+const THICK = 2.4;
+const DISTANCE_DASH = [3, 3];
+
+const turned = (list, index) => list[index % list.length];
 
 const makePanels = (flights, tracks) => {
   const two = flights.length > 1;
@@ -15,26 +17,33 @@ const makePanels = (flights, tracks) => {
       track,
       index: i,
       label: named(f, several ? cable : words),
-      colour: two ? FLIGHT_COLOURS[f] : DATA.colours.series[i % DATA.colours.series.length],
-      dash: two ? CABLE_DASHES[i % CABLE_DASHES.length] : [],
+      colour: two ? DATA.colours.flights[f] : turned(DATA.colours.series, i),
+      dash: turned(DATA.colours.dashes, i),
+      width: f ? THICK : THIN,
     }));
-  const each = (track, labels, f, dash = []) =>
-    labels.map((label, index) => ({ f, track, index, label, colour: SIX_COLOURS[index % SIX_COLOURS.length], dash }));
+  const each = (track, labels, f) =>
+    labels.map((label, index) => ({
+      f,
+      track,
+      index,
+      label,
+      colour: turned(DATA.colours.series, index),
+      dash: turned(DATA.colours.dashes, index),
+      width: THIN,
+    }));
   const panels = [
     { title: "tension", unit: "N", log: true, tall: 1.5, series: perCable("tension", "") },
     {
-      title: two ? "cable length" : "cable length, distance to anchor",
+      title: "cable length, distance to anchor",
       unit: "m",
       zero: true,
       series: [
-        ...perCable("cable_length", two ? "" : "length"),
-        ...(two
-          ? []
-          : perCable("distance", "distance").map((one) => ({
-              ...one,
-              dash: [3, 3],
-              label: several ? null : one.label,
-            }))),
+        ...perCable("cable_length", "length"),
+        ...perCable("distance", "distance").map((one) => ({
+          ...one,
+          dash: DISTANCE_DASH,
+          label: several ? null : one.label,
+        })),
       ],
     },
     { title: "rewind rate", unit: "m/s", zero: true, tall: 0.75, series: perCable("rewind_rate", "") },
@@ -48,14 +57,13 @@ const makePanels = (flights, tracks) => {
         f,
       ),
     })),
-    {
-      title: two ? "attitude (B dashed)" : "attitude",
+    ...flights.map((_, f) => ({
+      title: two ? `attitude ${LETTERS[f]}` : "attitude",
       unit: "°",
       least: 1,
-      series: flights.flatMap((_, f) =>
-        each("attitude", f ? [null, null, null] : ["roll", "pitch", "yaw"], f, f ? [5, 3] : []),
-      ),
-    },
+      alike: "attitude",
+      series: each("attitude", ["roll", "pitch", "yaw"], f),
+    })),
   ];
   if (!cables.length) {
     const straight = flights.map((flight, f) => ({
@@ -63,8 +71,9 @@ const makePanels = (flights, tracks) => {
       track: "centre",
       index: 2,
       label: named(f, ""),
-      colour: FLIGHT_COLOURS[f],
-      dash: [],
+      colour: DATA.colours.flights[f],
+      dash: turned(DATA.colours.dashes, f),
+      width: f ? THICK : THIN,
       of: (down) => flight.ground - down,
     }));
     panels.unshift({ title: "altitude of B", unit: "m", least: 1, series: straight });

@@ -24,16 +24,19 @@ class Plots {
     panel.box.classList.toggle("log", Boolean(panel.log));
     this.legend(panel);
     this.parent.append(panel.box);
-    const tables = this.flights.map((_, f) => {
-      const own = panel.series.filter((one) => one.f === f);
-      return [
-        tracks[f].column("time"),
-        ...own.map((one) => tracks[f].column(one.track, one.index).map(one.of || ((v) => v))),
-      ];
-    });
+    const column = (one) => tracks[one.f].column(one.track, one.index).map(one.of || ((v) => v));
+    const tables = this.flights.map((_, f) => [
+      tracks[f].column("time"),
+      ...panel.series.filter((one) => one.f === f).map(column),
+    ]);
     panel.series.sort((a, b) => a.f - b.f);
     const data = tables.length > 1 ? uPlot.join(tables) : tables[0];
-    panel.range = extent(panel, this.flights, data.slice(1));
+    const alike = panel.alike ? this.panels.filter((other) => other.alike === panel.alike) : [];
+    panel.range = extent(
+      panel,
+      this.flights,
+      alike.length ? alike.flatMap((other) => other.series.map(column)) : data.slice(1),
+    );
     if (panel.log)
       for (let i = 1; i < data.length; i += 1)
         data[i] = data[i].map((v) => (v === null || v === undefined ? null : Math.max(v, panel.range[0])));
@@ -50,7 +53,7 @@ class Plots {
     for (const one of panel.series) {
       if (one.label === null) continue;
       const item = document.createElement("li");
-      item.innerHTML = `<svg viewBox="0 0 18 4"><path d="M0 2h18" stroke="${one.colour}" stroke-dasharray="${one.dash.join(" ")}"/></svg><span></span> <b></b>`;
+      item.innerHTML = `<svg viewBox="0 0 26 4"><path d="M0 2h26" stroke="${one.colour}" stroke-width="${one.width * 1.6}" stroke-dasharray="${one.dash.join(" ")}"/></svg><span></span> <b></b>`;
       item.querySelector("span").textContent = one.label;
       item.classList.toggle("alone", panel.series.length === 1);
       list.append(item);
@@ -95,7 +98,7 @@ class Plots {
         {},
         ...panel.series.map((one) => ({
           stroke: one.colour,
-          width: 1.25,
+          width: one.width,
           dash: one.dash,
           points: { show: false },
           spanGaps: true,

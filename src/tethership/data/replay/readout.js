@@ -82,7 +82,7 @@ class Readout {
 const fillKey = (element, flights, scale) => {
   const { stops } = scale;
   const cables = flights.some((flight) => flight.cables.length);
-  const thrusters = flights[0].ship.thrusters;
+  const thrusters = flights.flatMap((flight) => flight.ship.thrusters);
   const parts = [];
   if (cables) {
     const steps = scale.colours.map(
@@ -101,7 +101,7 @@ const fillKey = (element, flights, scale) => {
   if (thrusters.length) {
     const nominal = new Set(thrusters.map((one) => one.nominal));
     const full = nominal.size === 1 ? `, ${[...nominal][0]} N at full throttle` : "";
-    parts.push(arrow(SCENE_COLOURS.thrust, `thrust on the ship${full}`));
+    parts.push(arrow(DATA.colours.arrows.thrust, `thrust on the ship${full}`));
   }
   element.innerHTML = parts.join("");
 };

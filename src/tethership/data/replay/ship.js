@@ -26,7 +26,7 @@ class Ship {
       mesh.position.set(...part);
       this.group.add(mesh);
     }
-    this.arrows = ship.thrusters.map(() => new Arrow(SCENE_COLOURS.thrust, 0.006 * ship.length));
+    this.arrows = ship.thrusters.map(() => new Arrow(DATA.colours.arrows.thrust, 0.006 * ship.length));
     for (const arrow of this.arrows) this.group.add(arrow.group);
   }
 

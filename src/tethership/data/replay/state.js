@@ -1,6 +1,7 @@
 // What a stage shows, read back from its scene: for tests.
 
 const stageState = (stage) => {
+  if (stage.blind) return { name: stage.flight.name, blind: true, readout: readoutOf(stage) };
   const { ship, cables, wind, rig, flight } = stage;
   stage.scene.updateMatrixWorld(true);
   const world = ship.group.localToWorld(new THREE.Vector3(...flight.ship.nose));
@@ -22,8 +23,9 @@ const stageState = (stage) => {
     gust: { from: list(wind.gust.from), to: list(wind.gust.to), shown: wind.gust.group.visible },
     camera: { position: list(toGround(rig.camera.position)), target: list(toGround(rig.controls.target)) },
     nose_on_screen: list(toScene(ship.point(flight.ship.nose)).project(rig.camera)),
-    readout: Array.from(stage.parent.parentElement.querySelectorAll(".readout tbody tr"), (row) =>
-      row.innerText.trim(),
-    ),
+    readout: readoutOf(stage),
   };
 };
+
+const readoutOf = (stage) =>
+  Array.from(stage.parent.parentElement.querySelectorAll(".readout tbody tr"), (row) => row.innerText.trim());

@@ -25,8 +25,8 @@ class Wind {
     this.perSpeed = perSpeed;
     this.height = 0.5 * ship.diameter + 0.14 * ship.length;
     this.length = ship.length;
-    this.mean = new Arrow(SCENE_COLOURS.wind, 0.008 * ship.length);
-    this.gust = new Arrow(SCENE_COLOURS.gust, 0.008 * ship.length);
+    this.mean = new Arrow(DATA.colours.arrows.wind, 0.008 * ship.length);
+    this.gust = new Arrow(DATA.colours.arrows.gust, 0.008 * ship.length);
     this.group = new THREE.Group();
     this.group.add(this.mean.group, this.gust.group);
     this.meanLabel = labels.add("", "wind");

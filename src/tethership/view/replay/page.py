@@ -30,6 +30,7 @@ SCRIPTS = (
     "labels",
     "cameras",
     "stage",
+    "no_stage",
     "readout",
     "panels",
     "plots",
@@ -126,8 +127,12 @@ def _colours() -> dict[str, Any]:
         "path": style.END,
         "ground": style.GROUND,
         "gust": style.GUST,
-        "series": list(style.CABLES),
-        "limits": list(style.LIMITS),
+        "series": style.SERIES,
+        "dashes": style.DASHES,
+        "flights": style.FLIGHTS,
+        "tension": style.TENSION,
+        "arrows": style.ARROWS,
+        "limits": style.LIMITS,
     }
 
 
