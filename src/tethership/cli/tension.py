@@ -1,6 +1,6 @@
 """`tethership tension`: one cable between two points."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 import typer
@@ -17,10 +17,15 @@ from tethership.cli.common import (
     print_json,
     writable_folder,
 )
+from tethership.cli.points import warn
 from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
-from tethership.errors import ConfigError
+from tethership.errors import ConfigError, SolveError
+from tethership.results.limits import ratios_passed
 from tethership.results.schema import GROUND, REGIMES
 from tethership.scenario import Scenario
+
+FINE = 513
+"""Points of the curve from which the sag is read off: 1e-5 of it for a parabola."""
 
 EXAMPLE = "Example: tethership tension --end -11.3137 0 -11.3137 --length 20 --wind-vector -6 0 0 --json"
 
@@ -41,6 +46,9 @@ def tension(
         typer.Option(help="Anchor: north, east, down [m]. Default: the scenario's."),
     ] = None,
     cable: Annotated[str | None, typer.Option(help="Name of the cable. Default: the first.")] = None,
+    points: Annotated[
+        int | None, typer.Option(min=2, max=10_000, help="Also so many points of the curve, with the tension there.")
+    ] = None,
     wind: WindOption = None,
     formulation: FormulationOption = None,
     changes: SetOption = None,
@@ -50,8 +58,12 @@ def tension(
 ) -> None:
     """Tension and shape of one cable of a scenario, its ends put where you say.
 
-    With --out the result is also written there as tension.json.
+    Told are forces, angles at both ends, sag, height above the ground and limits that are passed; with --points the
+    curve from the anchor to the ship too (north, east, down [m]), with the tension there [N]. With --out the result
+    is also written there as tension.json.
     """
+    if wind is not None and wind_vector is not None:
+        raise ConfigError("--wind and --wind-vector both say what the wind is; give one of them")
     loaded = chosen_scenario(scenario, wind, formulation, changes)
     index = _cable_index(loaded, cable)
     chosen = loaded.config.cables[index]
@@ -61,7 +73,15 @@ def tension(
     writable_csv(csv)
     folder = None if out is None else writable_folder(out)
     place = np.array(chosen.anchor if anchor is None else anchor)
-    result = _computed(loaded, index, np.array(end), place, reach, np.array(velocity), wind_vector)
+    line = _Line(loaded, index, np.array(end), place, reach, anchor is not None)
+    with np.errstate(all="ignore"):  # what is not finite is told below
+        result = _computed(line, np.array(velocity), wind_vector, points)
+    if not np.isfinite(result["tension"]):
+        raise SolveError(
+            f"the tension between these ends is not finite: {reach:g} m of cable over "
+            f"{float(np.linalg.norm(line.end - place)):.3g} m are beyond what can be computed; check --end, --anchor "
+            "and --length"
+        )
     if folder is not None:
         (folder / "tension.json").write_text(json_text(result), encoding="utf-8")
     rows = _rows(result)
@@ -70,6 +90,49 @@ def tension(
         print_json(result)
         return
     print_table(rows, f"cable {chosen.name!r}, {reach:g} m, formulation {loaded.formulation}")
+    if points is not None:
+        typer.echo("  " + "  ".join(f"{axis:>12}" for axis in (*GROUND, "tension")))
+    for position, tension in zip(result.get("points", ()), result.get("tension_along", ()), strict=True):
+        typer.echo("  " + "  ".join(f"{value:>10.3f} m" for value in position) + f"  {tension:>10.3f} N")
+    warn(result["warnings"])
+
+
+class _Line(NamedTuple):
+    """One cable of a scenario with its ends put somewhere; positions in ground axes [m], length unstretched [m]."""
+
+    scenario: Scenario
+    place: int
+    end: np.ndarray
+    anchor: np.ndarray
+    length: float
+    moved: bool
+
+    @property
+    def ground(self) -> float:
+        """Down coordinate of the ground [m]: the scenario's, or the level of an anchor that was put elsewhere."""
+        given = self.scenario.config.ground.anchor_height is not None
+        return float(self.anchor[2] if self.moved and not given else self.scenario.system.environment.ground)
+
+    def limits_passed(self, tension: float, largest: float) -> dict[str, float]:
+        """Return tension over limit [-] of every watched limit that is passed; a cable breaks at its own force."""
+        limits = self.scenario.config.watched_limits()
+        limits["cable_break"] = self.scenario.config.cables[self.place].breaking_force
+        return ratios_passed(limits, dict.fromkeys(limits, tension) | {"cable_break": largest})
+
+    def warnings(self, passed: dict[str, float], largest: float, clearance: float) -> list[str]:
+        """Return what must be known of the result before it is used."""
+        name, said = self.scenario.config.cables[self.place].name, []
+        if "cable_break" in passed:
+            said.append(
+                f"the cable {name} would break: {largest:.4g} N are {passed['cable_break']:.3g} times its breaking "
+                "force"
+            )
+        if clearance < -1e-3:
+            said.append(
+                f"the cable {name} hangs {-clearance:.2f} m below the ground, on which it would lie; contact with the "
+                "ground is not modelled, so its pull is that of a cable hanging free"
+            )
+        return said
 
 
 def _rows(result: dict[str, Any]) -> list[Row]:
@@ -80,8 +143,16 @@ def _rows(result: dict[str, Any]) -> list[Row]:
         *[Row(f"force on the ship, {axis}", part, "N", ".3f") for axis, part in zip(GROUND, force, strict=True)],
         Row("tension at the anchor", float(np.linalg.norm(result["anchor_force"])), "N", ".3f"),
         Row("elongation", result["elongation"], "", ".5f"),
-        Row("regime", result["regime"]),
+        Row("regime", result["regime"], note="beyond its breaking force" * ("cable_break" in result["limits_passed"])),
         Row("lowest point, down", float(result["lowest_point"][2]), "m", ".3f"),
+        Row("cable above ground", result["clearance_cable"], "m", ".3f"),
+        Row("sag off the chord", result["sag"], "m", ".3f"),
+        *[
+            Row(f"elevation at the {end}", angle, "deg", ".2f")
+            for end, angle in result["angles"].items()
+            if angle is not None
+        ],
+        *[Row(f"limit passed: {name}", ratio, "times", ".3f") for name, ratio in result["limits_passed"].items()],
     ]
 
 
@@ -96,30 +167,60 @@ def _cable_index(scenario: Scenario, name: str | None) -> int:
 
 
 def _computed(
-    scenario: Scenario,
-    index: int,
-    end: np.ndarray,
-    anchor: np.ndarray,
-    length: float,
+    line: _Line,
     velocity: np.ndarray,
     wind_vector: tuple[float, float, float] | None,
+    points: int | None,
 ) -> dict[str, Any]:
-    """Return forces, regime and lowest point; positions and vectors in ground axes, SI."""
+    """Return forces, shape, and what must be known of them; positions and vectors in ground axes, SI, angles in deg."""
     import jax.numpy as jnp
 
-    from tethership.system.tethered import cable_between
+    from tethership.system.tethered import cable_along, cable_between
 
-    cable, environment = scenario.system.cables[index], scenario.system.environment
+    scenario = line.scenario
+    cable, environment = scenario.system.cables[line.place], scenario.system.environment
     given = None if wind_vector is None else jnp.array(wind_vector)
-    places = jnp.asarray(end), jnp.asarray(anchor), jnp.asarray(length), jnp.asarray(velocity)
-    found = cable_between(cable, environment, *places, given)
-    return {
+    ends = jnp.asarray(line.end), jnp.asarray(line.anchor)
+    found = cable_between(cable, environment, *ends, jnp.asarray(line.length), jnp.asarray(velocity), given)
+    fine, _ = cable_along(cable, found, *ends, jnp.linspace(0.0, line.length, FINE))
+    tension, largest = (float(np.linalg.norm(found.ship)), float(np.linalg.norm(found.anchor)))
+    largest = max(tension, largest)
+    clearance = line.ground - float(found.lowest[2])
+    passed = line.limits_passed(tension, largest)
+    result = {
         "force": found.ship,
-        "tension": float(np.linalg.norm(found.ship)),
+        "tension": tension,
         "regime": REGIMES[int(found.regime)],
-        "elongation": float(np.linalg.norm(end - anchor) / length),
+        "elongation": float(np.linalg.norm(line.end - line.anchor) / line.length),
         "anchor_force": found.anchor,
         "lowest_point": found.lowest,
         "load": found.load,
         "formulation": scenario.formulation,
+        "angles": {"anchor": _elevation(found.anchor), "ship": _elevation(-np.asarray(found.ship))},
+        "sag": _sag(np.asarray(fine)),
+        "limits_passed": passed,
+        "clearance_hull": None,
+        "clearance_cable": clearance,
+        "warnings": line.warnings(passed, largest, clearance),
     }
+    if points is None:
+        return result
+    arc = jnp.linspace(0.0, line.length, points)
+    curve, along = cable_along(cable, found, *ends, arc)
+    return result | {"arc": arc, "points": curve, "tension_along": along}
+
+
+def _elevation(direction: Any) -> float | None:
+    """Return the angle above the horizontal of a direction from the anchor's side to the ship's [deg], None at rest."""
+    vector = np.asarray(direction)
+    length = float(np.linalg.norm(vector))
+    return float(np.degrees(np.arcsin(-vector[2] / length))) if length > 0 else None
+
+
+def _sag(curve: np.ndarray) -> float:
+    """Return the largest distance of a curve from its chord [m]."""
+    span = curve[-1] - curve[0]
+    length = np.linalg.norm(span)
+    along = span / length if length > 0 else span
+    offset = curve - curve[0]
+    return float(np.linalg.norm(offset - (offset @ along)[:, None] * along, axis=1).max())

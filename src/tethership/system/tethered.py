@@ -251,3 +251,29 @@ def cable_between(
     regime = cable.law.regime(safe_norm(span) / length)
     lowest = moved.lowest_point(state, jnp.asarray(length))
     return CableBetween(state.ship, state.anchor, state.load, lowest, regime)
+
+
+@eqx.filter_jit
+def cable_along(
+    cable: Cable, found: CableBetween, end: Float[Array, "3"], anchor: Float[Array, "3"], arc: Float[Array, "n"]
+) -> tuple[Float[Array, "n 3"], Float[Array, "n"]]:
+    """Return points of a cable, ground axes [m], and the tension there [N].
+
+    Parameters
+    ----------
+    cable : Cable
+        Parameters.
+    found : CableBetween
+        From `cable_between`, for the same ends.
+    end, anchor : Float[Array, "3"]
+        Ends, ground axes [m].
+    arc : Float[Array, "n"]
+        Unstretched distance from the anchor s [m], the last one being the length.
+
+    Notes
+    -----
+    The tension vector falls linearly from that at the anchor to that at the ship, t(s) = F_AP − (s/L)(F_AP + F_TP).
+    """
+    points = anchor + cable.law.shape(end - anchor, arc[-1], found.load, arc)
+    vectors = found.anchor - (arc / arc[-1])[:, None] * (found.anchor + found.ship)
+    return points, jnp.sqrt(jnp.sum(vectors**2, axis=1))
