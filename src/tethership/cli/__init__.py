@@ -3,7 +3,8 @@
 import contextlib
 import os
 import sys
-from typing import Annotated, NoReturn
+import warnings
+from typing import Annotated, Any, NoReturn
 
 import typer
 
@@ -26,7 +27,7 @@ from tethership.cli import (
 )
 from tethership.cli.checked import checked
 from tethership.cli.common import NO_ANSWER, WRONG_INPUT
-from tethership.errors import ConfigError, SolveError, one_line
+from tethership.errors import ConfigError, SolveError, TethershipWarning, one_line
 
 INTERRUPTED = 130
 """What typer returns after Ctrl-C."""
@@ -81,11 +82,23 @@ def _nothing_more_to_say() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
+def _warn(message: Warning | str, category: type[Warning], *where: Any) -> None:
+    """Print a warning of this package as one line on standard error; others as Python does."""
+    if issubclass(category, TethershipWarning):
+        typer.echo(f"tethership: warning: {' '.join(str(message).split())}", err=True)
+    else:
+        _python_warns(message, category, *where)
+
+
+_python_warns = warnings.showwarning
+
+
 def main() -> None:
     """Run the command with the promised exit codes and one clear line for wrong input."""
     loaded()
     if sys.stdout is None:
         _fail("standard output is closed, so nothing can be told; leave it open or send it to /dev/null", WRONG_INPUT)
+    warnings.showwarning = _warn
     try:
         code = app(prog_name="tethership", standalone_mode=False)
         sys.stdout.flush()
