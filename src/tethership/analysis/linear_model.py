@@ -16,7 +16,6 @@ from tethership._version import __version__
 from tethership.errors import ConfigError, suggestion
 from tethership.results import store
 from tethership.system.names import LENGTH, WIND_INPUTS
-from tethership.system.names import LENGTH
 
 if TYPE_CHECKING:
     import control
