@@ -61,6 +61,7 @@ def test_what_the_user_sets_stays(tmp_path):
 
 def test_an_equinox_that_cannot_be_told_is_a_warning(monkeypatch):
     monkeypatch.delenv("EQX_ON_ERROR", raising=False)
+    monkeypatch.setitem(sys.modules, "equinox", types.ModuleType("equinox"))
     monkeypatch.setitem(sys.modules, "equinox._errors", types.ModuleType("equinox._errors"))
     with pytest.warns(UserWarning, match="import tethership first, or set EQX_ON_ERROR=nan"):
         checks_without_callbacks()

@@ -14,6 +14,7 @@ from tethership.cli import (
     campaign,
     dock,
     explore,
+    export,
     files,
     identify,
     listing,
@@ -64,6 +65,7 @@ app.command("tune", epilog=tune.EXAMPLE)(checked(tune.tune))
 app.command("reproduce", epilog=reproduce.EXAMPLE)(checked(reproduce.reproduce))
 app.command("campaign", epilog=campaign.EXAMPLE)(checked(campaign.campaign))
 app.command("view", epilog=view.EXAMPLE)(checked(view.view))
+app.command("export", epilog=export.EXAMPLE)(checked(export.export))
 app.command("explore", epilog=explore.EXAMPLE)(checked(explore.explore))
 app.command("list", epilog=listing.EXAMPLE)(checked(listing.list_))
 app.command("validate", epilog=files.VALIDATE_EXAMPLE)(checked(files.validate))
