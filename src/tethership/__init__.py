@@ -36,7 +36,7 @@ import jax
 
 from tethership._cache import checks_without_callbacks, use_compilation_cache
 from tethership._version import __version__
-from tethership.errors import ConfigError, SolveError, TethershipError
+from tethership.errors import ConfigError, SolveError, TethershipError, TethershipWarning
 
 jax.config.update("jax_enable_x64", True)
 use_compilation_cache()
@@ -139,6 +139,7 @@ __all__ = [
     "SolveError",
     "Sweep",
     "TethershipError",
+    "TethershipWarning",
     "TrimOutcome",
     "TrimPoint",
     "__version__",

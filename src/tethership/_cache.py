@@ -3,6 +3,7 @@
 import os
 import sys
 import warnings
+from typing import Any
 
 import jax
 import platformdirs
@@ -33,7 +34,7 @@ def checks_without_callbacks() -> None:
     os.environ["EQX_ON_ERROR"] = "nan"
     if "equinox" not in sys.modules:
         return
-    errors = sys.modules.get("equinox._errors")
+    errors: Any = sys.modules.get("equinox._errors")
     if hasattr(errors, "EQX_ON_ERROR"):
         errors.EQX_ON_ERROR = "nan"
     else:

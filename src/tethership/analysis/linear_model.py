@@ -270,6 +270,7 @@ class LinearModel:
         if missing:
             raise ConfigError(f"{path} is no whole linear model: {', '.join(sorted(missing))} is missing")
         inputs = tuple(map(str, data["input"].values))
+        measured: tuple[Any, ...]
         if old:
             measured = (tuple(name for name in inputs if not name.startswith(UNCONTROLLED)),)
         else:

@@ -5,6 +5,7 @@ A column is called by the output, the labels of its other dimensions and its uni
 """
 
 import contextlib
+import importlib
 import io
 import itertools
 import os
@@ -52,7 +53,7 @@ def _csv(frame: "pd.DataFrame") -> bytes:
 def _parquet(frame: "pd.DataFrame") -> bytes:
     """Return the table as Apache Parquet."""
     try:
-        import pyarrow  # noqa: F401
+        importlib.import_module("pyarrow")
     except ImportError as error:
         raise ConfigError('parquet needs pyarrow; install it: pip install "tethership[parquet]"') from error
     return frame.to_parquet(engine="pyarrow")
