@@ -33,7 +33,8 @@ myst_links_external_new_tab = False
 
 default_role = "literal"
 smartquotes_action = "qe"  # `--out` keeps its two hyphens
-autodoc_typehints = "none"
+autodoc_typehints = "signature"
+autodoc_typehints_format = "short"
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True
 napoleon_google_docstring = False

@@ -39,6 +39,16 @@ def _escaped(line: str) -> str:
     return "".join(part if part.startswith("`") else part.replace("|", r"\|") for part in parts)
 
 
+def shorten(
+    app: Sphinx, what: str, name: str, thing: Any, options: Any, signature: str | None, returns: str | None
+) -> tuple[str | None, str | None]:
+    """Write a signature's arrays as its source does."""
+    short = [
+        part and part.replace("jaxlib._jax.Array", "Array").replace("~numpy.", "") for part in (signature, returns)
+    ]
+    return short[0], short[1]
+
+
 def skip_fields(app: Sphinx, what: str, name: str, thing: Any, skip: bool, options: Any) -> bool | None:
     """Leave out the fields of named tuples: the class's own text says what they are."""
     return True if type(thing).__name__ in ("_tuplegetter", "tuplegetter") else None
@@ -47,5 +57,6 @@ def skip_fields(app: Sphinx, what: str, name: str, thing: Any, skip: bool, optio
 def setup(app: Sphinx) -> dict[str, Any]:
     """Come before napoleon, which reads the sections."""
     app.connect("autodoc-process-docstring", digest, priority=400)
+    app.connect("autodoc-process-signature", shorten)
     app.connect("autodoc-skip-member", skip_fields)
     return {"parallel_read_safe": True}

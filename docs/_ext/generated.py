@@ -127,6 +127,8 @@ def api() -> list[str]:
         lines.append(f".. auto{kind}:: tethership.{name}")
         if kind == "class":
             lines.append("   :members:")
+            if "__call__" in vars(thing):
+                lines.append("   :special-members: __call__")
         lines.append("")
     return [*lines, "```"]
 

@@ -19,29 +19,28 @@ Imports point down only. Everything inside is SI and radians; body axes are nose
 east, down with the origin at the first anchor.
 
 Importing this package switches JAX to double precision, turns on its persistent compilation cache in the user's
-cache folder (unless `JAX_COMPILATION_CACHE_DIR` is set), and, if Equinox is not imported yet, sets `EQX_ON_ERROR=nan`:
-run-time checks are host callbacks, which would keep programs out of that cache. What is not finite is found by this
-package itself and returned as an outcome.
+cache folder (unless `JAX_COMPILATION_CACHE_DIR` is set), and has Equinox's run-time checks give NaN
+instead of raising (unless `EQX_ON_ERROR` is set), whichever package was imported first: checks that raise are host
+callbacks, which would keep programs out of that cache. What is not finite is found by this package itself and returned
+as an outcome.
 """
 
 import importlib
-import os
 from typing import TYPE_CHECKING, Any
 
 import tethership._interrupt  # noqa: F401 (acts on being imported, before what takes long)
 
 # isort: split
 
-os.environ.setdefault("EQX_ON_ERROR", "nan")
-
 import jax
 
-from tethership._cache import use_compilation_cache
+from tethership._cache import checks_without_callbacks, use_compilation_cache
 from tethership._version import __version__
-from tethership.errors import ConfigError, SolveError, TethershipError
+from tethership.errors import ConfigError, SolveError, TethershipError, TethershipWarning
 
 jax.config.update("jax_enable_x64", True)
 use_compilation_cache()
+checks_without_callbacks()
 
 if TYPE_CHECKING:
     from tethership.analysis import (
@@ -140,6 +139,7 @@ __all__ = [
     "SolveError",
     "Sweep",
     "TethershipError",
+    "TethershipWarning",
     "TrimOutcome",
     "TrimPoint",
     "__version__",

@@ -1,6 +1,9 @@
 """JAX's persistent compilation cache, so that a second start does not compile again. Depends on: platformdirs."""
 
 import os
+import sys
+import warnings
+from typing import Any
 
 import jax
 import platformdirs
@@ -16,3 +19,27 @@ def use_compilation_cache() -> None:
     jax.config.update("jax_compilation_cache_dir", platformdirs.user_cache_dir("tethership") + "/jax")
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
+
+
+def checks_without_callbacks() -> None:
+    """Have Equinox's run-time checks give NaN; what the user has set in `EQX_ON_ERROR` is left alone.
+
+    Notes
+    -----
+    Equinox reads the variable once, when it is imported. Where that has happened already (by diffrax, say) its own
+    copy is changed; where a later version has none, a warning says what to do.
+    """
+    if "EQX_ON_ERROR" in os.environ:
+        return
+    os.environ["EQX_ON_ERROR"] = "nan"
+    if "equinox" not in sys.modules:
+        return
+    errors: Any = sys.modules.get("equinox._errors")
+    if hasattr(errors, "EQX_ON_ERROR"):
+        errors.EQX_ON_ERROR = "nan"
+    else:
+        warnings.warn(
+            "equinox was imported before tethership, so that every start will compile anew, some three times as slow: "
+            "import tethership first, or set EQX_ON_ERROR=nan",
+            stacklevel=3,
+        )

@@ -49,3 +49,7 @@ class ConfigError(TethershipError):
 
 class SolveError(TethershipError):
     """A computation has no answer (no equilibrium, diverged flight) and the caller asked for an exception."""
+
+
+class TethershipWarning(UserWarning):
+    """Input that can be computed with, but hardly means what it says; the command prints it as one line."""

@@ -9,6 +9,7 @@ import contextlib
 import importlib
 import re
 import shlex
+import subprocess
 import sys
 import tomllib
 import unittest
@@ -19,6 +20,7 @@ from sybil import Example, Sybil
 from sybil.parsers.myst import CodeBlockParser, PythonCodeBlockParser, SkipParser
 from sybil.parsers.rest import DocTestParser
 
+import tethership as ts
 from tethership import cli
 
 ROOT = Path(__file__).parents[2]
@@ -105,6 +107,36 @@ def test_docstrings(path, tmp_path, monkeypatch):
     document.namespace.update(vars(importlib.import_module(".".join(path.relative_to(SOURCE).with_suffix("").parts))))
     for example in document:
         example.evaluate()
+
+
+SETTINGS = """
+import runpy, sys
+main = runpy.run_path({conf!r})
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "docstrings", "generated"]
+globals().update({{key: value for key, value in main.items() if key.startswith(("autodoc_", "napoleon_"))}})
+"""
+
+
+def test_reference_has_every_name_and_its_types(tmp_path):
+    """Public names and their methods, also those that a user writes in a class of one's own, with their types."""
+    pytest.importorskip("sphinx")
+    assert (SOURCE / "tethership" / "py.typed").exists()  # the wheel holds all of the package's folder
+    (tmp_path / "index.md").write_text((ROOT / "docs" / "reference" / "api.md").read_text(encoding="utf-8"))
+    (tmp_path / "conf.py").write_text(SETTINGS.format(conf=str(ROOT / "docs" / "conf.py")))
+    build = [sys.executable, "-m", "sphinx", "-q", "-b", "text", str(tmp_path), str(tmp_path / "out")]
+    subprocess.run(build, check=True, capture_output=True, timeout=300)
+    page = (tmp_path / "out" / "index.txt").read_text(encoding="utf-8")
+    missing = [name for name in ts.__all__ if name != "__version__" and f"tethership.{name}" not in page]
+    assert missing == []
+    assert "__call__(time: Float[Array, ''], measurement: Measurement, memory: Any) -> tuple[Correction, Any]" in page
+    assert "select(states: Sequence[str] | None = None, inputs: Sequence[str] | None = None) -> LinearModel" in page
+    signatures = re.findall(r"^(?:   )?(?:abstractmethod |classmethod )?[\w.]+\(.*\)(.*)$", page, re.MULTILINE)
+    assert len(signatures) > 40
+    assert all(returned.startswith(" -> ") for returned in signatures), signatures
+    assert "jaxlib" not in page
+    for name in ("AbstractLaw", "Flight", "LinearModel", "Scenario", "Modes"):
+        methods = [key for key, value in vars(getattr(ts, name)).items() if callable(value) and not key.startswith("_")]
+        assert [method for method in methods if f"{method}(" not in page] == []
 
 
 def test_what_is_not_run_is_long():

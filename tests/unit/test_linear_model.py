@@ -171,7 +171,7 @@ def test_unknown_route(docking, point):
 
 
 def test_python_control(model):
-    system = model.to_control()
+    system = model.to_control(model.inputs)
     assert isinstance(system, control.StateSpace)
     np.testing.assert_array_equal(system.A, model.A)
     np.testing.assert_array_equal(system.B, model.U)
@@ -185,7 +185,7 @@ def test_python_control(model):
 
 def test_python_control_of_a_part(model):
     part = model.longitudinal().select(inputs=["tail_down", "length_nose"])
-    system = part.to_control()
+    system = part.to_control(part.inputs)
     assert tuple(system.state_labels) == part.states
     # D = 0 and all states are outputs: the response at one frequency is (iω − A)⁻¹U
     frequency = 0.3

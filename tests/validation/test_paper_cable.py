@@ -143,6 +143,14 @@ def test_published_force_is_that_of_the_papers_equations():
     assert worst < 1e-12
 
 
+@pytest.mark.parametrize(("elongation", "carried"), [(0.98, 15.69), (1.02, 7.85), (1.0335, 4.31), (1.05, 0.0)])
+def test_the_published_law_loses_a_taut_cables_weight(elongation, carried):
+    # the numbers of its page and docstring, of 20 m at 80 g/m; the elastic catenary carries all of it
+    for law, expected in ((published, carried), (elastic, 15.69)):
+        force = law(np.array([0.0, 0.0, -elongation * LENGTH]), LENGTH, WEIGHT)
+        assert float((force.ship + force.anchor)[2]) == pytest.approx(expected, abs=5e-3)
+
+
 def test_curve_is_the_papers_profile():
     curve = jax.jit(lambda d, length, load, arc: LAW.shape(d, length, load, arc))
     for span, length, load in _random_geometries(100, seed=52):

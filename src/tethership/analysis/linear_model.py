@@ -15,7 +15,7 @@ import xarray as xr
 from tethership._version import __version__
 from tethership.errors import ConfigError, suggestion
 from tethership.results import store
-from tethership.system.names import LENGTH
+from tethership.system.names import LENGTH, WIND_INPUTS
 
 if TYPE_CHECKING:
     import control
@@ -31,6 +31,12 @@ FORMAT = 1
 WHOLE = ("A", "U", "comparable", "state_value", "input_value", "state_unit", "input_unit")
 """Variables of such a file."""
 
+MEASURED = ("C", "D", "output_value", "output_unit", "input_is_control")
+"""Variables that files of version 0.1 lack."""
+
+UNCONTROLLED = (*WIND_INPUTS, LENGTH)
+"""How the names of inputs begin that nobody commands: the wind, and a cable's length unless its winch is an input."""
+
 LONGITUDINAL = ("u", "w", "q", "theta", "north", "down")
 LATERAL = ("v", "p", "r", "phi", "psi", "east")
 POSITION = ("north", "east", "down")
@@ -38,7 +44,7 @@ POSITION = ("north", "east", "down")
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class LinearModel:
-    """Δṡ = A Δs + U Δδ about a point.
+    """Δṡ = A Δs + U Δδ, Δy = C Δs + D Δδ about a point.
 
     Attributes
     ----------
@@ -57,6 +63,15 @@ class LinearModel:
         hull's length, so that every entry is in m/s or m at the hull's end.
     attributes : dict
         Formulation, outcome of the trim, the scenario as read.
+    controls : tuple of str
+        Those inputs that a law commands: throttles, deflections, rewind rates. The others are `disturbances`.
+    outputs, output_units : tuple of str
+        Names and SI units of what is measured besides the states: `tension_…` of each cable at the ship, `airspeed`,
+        `angle_of_attack`, `sideslip` (these three only with airspeed), `rate_of_climb`, `clearance`.
+    output_values : ndarray
+        y₀.
+    C, D : ndarray
+        Output matrices, shapes (outputs, n) and (outputs, inputs).
     """
 
     A: np.ndarray
@@ -69,6 +84,22 @@ class LinearModel:
     input_values: np.ndarray
     comparable: np.ndarray
     attributes: dict[str, Any]
+    controls: tuple[str, ...] = ()
+    outputs: tuple[str, ...] = ()
+    output_units: tuple[str, ...] = ()
+    output_values: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
+    C: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros((0, 0)))
+    D: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros((0, 0)))
+
+    def __post_init__(self) -> None:
+        if not self.outputs:  # so that a model made by hand needs no empty matrices
+            object.__setattr__(self, "C", np.zeros((0, len(self.states))))
+            object.__setattr__(self, "D", np.zeros((0, len(self.inputs))))
+
+    @property
+    def disturbances(self) -> tuple[str, ...]:
+        """Inputs that nobody commands: the wind's change and rate, and lengths of cables without their winch."""
+        return tuple(name for name in self.inputs if name not in self.controls)
 
     def modes(self) -> "Modes":
         """Return the modes: eigenvalues, names, participation (see `modes.find_modes`)."""
@@ -97,6 +128,12 @@ class LinearModel:
             self.input_values[columns],
             self.comparable[np.ix_(rows, rows)],
             self.attributes,
+            tuple(self.inputs[i] for i in columns if self.inputs[i] in self.controls),
+            self.outputs,
+            self.output_units,
+            self.output_values,
+            self.C[:, rows],
+            self.D[:, columns],
         )
 
     def without_position(self) -> "LinearModel":
@@ -152,19 +189,40 @@ class LinearModel:
             )
         return self.select(kept)
 
-    def to_control(self) -> "control.StateSpace":
-        """Return a python-control StateSpace with named states, inputs and outputs; all states are outputs."""
+    def to_control(
+        self, inputs: Sequence[str] | None = None, outputs: Sequence[str] | None = None
+    ) -> "control.StateSpace":
+        """Return a python-control StateSpace with named states, inputs and outputs.
+
+        Parameters
+        ----------
+        inputs : sequence of str, optional
+            The `controls` if left out, so that control.lqr(plant, Q, R) is a law; or `disturbances`.
+        outputs : sequence of str, optional
+            Names of states and of `outputs`; all states if left out.
+
+        Raises
+        ------
+        ConfigError
+            A name is not in the model, or there is no input.
+        """
         import control
 
-        count, width = len(self.states), len(self.inputs)
+        chosen = self.select(inputs=self.controls if inputs is None else inputs)
+        if not chosen.inputs:
+            raise ConfigError(
+                f"to_control: there is no input to choose; name some of {', '.join(self.inputs) or 'none'}"
+            )
+        known = (*self.states, *self.outputs)
+        rows = _places(self.states if outputs is None else outputs, known, "output")
         return control.StateSpace(
-            self.A,
-            self.U,
-            np.eye(count),
-            np.zeros((count, width)),
-            states=list(self.states),
-            inputs=list(self.inputs),
-            outputs=list(self.states),
+            chosen.A,
+            chosen.U,
+            np.vstack([np.eye(len(self.states)), chosen.C])[rows],
+            np.vstack([np.zeros(chosen.U.shape), chosen.D])[rows],
+            states=list(chosen.states),
+            inputs=list(chosen.inputs),
+            outputs=[known[i] for i in rows],
             name="airship",
         )
 
@@ -177,11 +235,21 @@ class LinearModel:
             "comparable": (("state", "of_state"), self.comparable, {"long_name": "to comparable coordinates"}),
             "state_value": (("state",), self.state_values, {"long_name": "state at the point"}),
             "input_value": (("input",), self.input_values, {"long_name": "input at the point"}),
+            "input_is_control": (
+                ("input",),
+                np.isin(self.inputs, self.controls).astype("int8"),
+                {"long_name": "commanded"},
+            ),
+            "C": (("output", "of_state"), self.C, {"long_name": "output matrix"}),
+            "D": (("output", "input"), self.D, {"long_name": "direct matrix"}),
+            "output_value": (("output",), self.output_values, {"long_name": "output at the point"}),
         }
         coordinates = {
             "state": other,
             "of_state": other,
             "input": list(self.inputs),
+            "output": list(self.outputs),
+            "output_unit": ("output", list(self.output_units)),
             "state_unit": ("state", list(self.state_units)),
             "input_unit": ("input", list(self.input_units)),
         }
@@ -196,20 +264,36 @@ class LinearModel:
     def load(cls, path: str | Path) -> "LinearModel":
         """Return the model of a file; raises ConfigError where it is none."""
         data = store.read(Path(path), KIND, FORMAT)
-        missing = set(WHOLE) - set(data.variables)
+        names = set(map(str, data.variables))
+        old = not names & set(MEASURED)
+        missing = set(WHOLE if old else WHOLE + MEASURED) - names
         if missing:
             raise ConfigError(f"{path} is no whole linear model: {', '.join(sorted(missing))} is missing")
+        inputs = tuple(map(str, data["input"].values))
+        measured: tuple[Any, ...]
+        if old:
+            measured = (tuple(name for name in inputs if not name.startswith(UNCONTROLLED)),)
+        else:
+            measured = (
+                tuple(name for name, is_so in zip(inputs, data["input_is_control"].values, strict=True) if is_so),
+                tuple(map(str, data["output"].values)),
+                tuple(map(str, data["output_unit"].values)),
+                data["output_value"].values,
+                data["C"].values,
+                data["D"].values,
+            )
         return cls(
             data["A"].values,
             data["U"].values,
             tuple(map(str, data["state"].values)),
-            tuple(map(str, data["input"].values)),
+            inputs,
             tuple(map(str, data["state_unit"].values)),
             tuple(map(str, data["input_unit"].values)),
             data["state_value"].values,
             data["input_value"].values,
             data["comparable"].values,
             json.loads(data.attrs["attributes"]),
+            *measured,
         )
 
 

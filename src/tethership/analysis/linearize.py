@@ -1,6 +1,6 @@
 """The exact linear model: the whole right-hand side differentiated by JAX at a point.
 
-Depends on: analysis.right_side, analysis.linear_model, scenario, system.
+Depends on: analysis.right_side, analysis.outputs, analysis.linear_model, scenario, system.
 """
 
 from typing import Any, NamedTuple
@@ -13,6 +13,7 @@ from jaxtyping import Array, Float
 
 from tethership.analysis.differences import central_differences
 from tethership.analysis.linear_model import LinearModel
+from tethership.analysis.outputs import linear_outputs
 from tethership.analysis.right_side import WIND_UNITS, input_vector, loads, right_side
 from tethership.analysis.semi_analytic import semi_analytic
 from tethership.analysis.trim import TrimOutcome, TrimPoint
@@ -122,7 +123,7 @@ def linearize(
         `exact` (automatic differentiation of the whole right-hand side), `semi_analytic` (Eqs. 26–39 of the paper) or
         `differences` (central differences).
     length_states : bool
-        Make each cable's unstretched length a state, dL_t/dt = −Ψ, with the rewind rate Ψ as input.
+        Make each cable's unstretched length a state, dL_t/dt = −Ψ, with the rewind rate Ψ as a control.
     require_equilibrium : bool
         Refuse a point that is none.
 
@@ -130,7 +131,8 @@ def linearize(
     -------
     LinearModel
         States as `STATE_NAMES` (ground velocity and rates in body axes, Euler angles, position in ground axes); inputs
-        are throttles [-], deflections [rad], the wind's change [m/s] and rate [m/s²] in ground axes, lengths [m].
+        are throttles [-], deflections [rad], the wind's change [m/s] and rate [m/s²] in ground axes, lengths [m];
+        outputs as `LinearModel` lists them, differentiated exactly whatever the route.
 
     Raises
     ------
@@ -159,6 +161,9 @@ def linearize(
         _check_equilibrium(plant, state, np.asarray(residual))
     matrices = _by_route(route, exact, plant, vector, inputs)
     names, units = _inputs(system)
+    first_length = len(names) - len(plant.cables)
+    cables = tuple(name.removeprefix(LENGTH) for name in names[first_length:])
+    measured = linear_outputs(plant, vector, inputs, cables)
     model = LinearModel(
         np.asarray(matrices[0]),
         np.asarray(matrices[1]),
@@ -170,6 +175,8 @@ def linearize(
         np.asarray(inputs),
         np.asarray(comparable),
         _attributes(system, point, route),
+        names[: first_length - len(WIND_INPUTS)],
+        *measured,
     )
     return _with_lengths(model, plant) if length_states else model
 
@@ -258,15 +265,22 @@ def _with_lengths(model: LinearModel, plant: TetheredAirship) -> LinearModel:
     control[12:, kept:] = -np.eye(count)
     comparable = np.eye(12 + count)
     comparable[:12, :12] = model.comparable
+    rewinds = tuple(name.replace(LENGTH, REWIND_RATE, 1) for name in lengths)
     return LinearModel(
         state,
         control,
         (*model.states, *lengths),
-        (*model.inputs[:kept], *(name.replace(LENGTH, REWIND_RATE, 1) for name in lengths)),
+        (*model.inputs[:kept], *rewinds),
         (*model.state_units, *("m",) * count),
         (*model.input_units[:kept], *("m/s",) * count),
         np.concatenate([model.state_values, model.input_values[kept:]]),
         np.concatenate([model.input_values[:kept], np.zeros(count)]),
         comparable,
         model.attributes,
+        (*model.controls, *rewinds),
+        model.outputs,
+        model.output_units,
+        model.output_values,
+        np.hstack([model.C, model.D[:, kept:]]),
+        np.hstack([model.D[:, :kept], np.zeros((len(model.outputs), count))]),
     )

@@ -3,7 +3,8 @@
 import contextlib
 import os
 import sys
-from typing import Annotated, NoReturn
+import warnings
+from typing import Annotated, Any, NoReturn
 
 import typer
 
@@ -13,6 +14,7 @@ from tethership.cli import (
     campaign,
     dock,
     explore,
+    export,
     files,
     identify,
     listing,
@@ -26,7 +28,7 @@ from tethership.cli import (
 )
 from tethership.cli.checked import checked
 from tethership.cli.common import NO_ANSWER, WRONG_INPUT
-from tethership.errors import ConfigError, SolveError, one_line
+from tethership.errors import ConfigError, SolveError, TethershipWarning, one_line
 
 INTERRUPTED = 130
 """What typer returns after Ctrl-C."""
@@ -63,6 +65,7 @@ app.command("tune", epilog=tune.EXAMPLE)(checked(tune.tune))
 app.command("reproduce", epilog=reproduce.EXAMPLE)(checked(reproduce.reproduce))
 app.command("campaign", epilog=campaign.EXAMPLE)(checked(campaign.campaign))
 app.command("view", epilog=view.EXAMPLE)(checked(view.view))
+app.command("export", epilog=export.EXAMPLE)(checked(export.export))
 app.command("explore", epilog=explore.EXAMPLE)(checked(explore.explore))
 app.command("list", epilog=listing.EXAMPLE)(checked(listing.list_))
 app.command("validate", epilog=files.VALIDATE_EXAMPLE)(checked(files.validate))
@@ -81,11 +84,23 @@ def _nothing_more_to_say() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
+def _warn(message: Warning | str, category: type[Warning], *where: Any) -> None:
+    """Print a warning of this package as one line on standard error; others as Python does."""
+    if issubclass(category, TethershipWarning):
+        typer.echo(f"tethership: warning: {' '.join(str(message).split())}", err=True)
+    else:
+        _python_warns(message, category, *where)
+
+
+_python_warns = warnings.showwarning
+
+
 def main() -> None:
     """Run the command with the promised exit codes and one clear line for wrong input."""
     loaded()
     if sys.stdout is None:
         _fail("standard output is closed, so nothing can be told; leave it open or send it to /dev/null", WRONG_INPUT)
+    warnings.showwarning = _warn
     try:
         code = app(prog_name="tethership", standalone_mode=False)
         sys.stdout.flush()

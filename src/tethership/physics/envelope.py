@@ -13,9 +13,13 @@ which hold from the nose to l_h; behind it the flow is separated or ruled by the
 - `ConsistentEnvelope` corrects Kirchhoff's whole-hull loads (`KirchhoffApparentMass`): minus the slices behind l_h,
   plus (η_k − 1) times those ahead of it. With η_k = 1 and l_h = L nothing is left.
 
+The drag of a slender hull is split into axial and cross-flow drag, each with its own part of the airspeed. A sphere has
+no axis to split about: one coefficient on the frontal area and the whole airspeed, f = −½ρ ¼πD² C_D |v| v.
+
 References
 ----------
-Munk, NACA TR-184 (1924); Jones & DeLaurier, J. Aircraft 20 (1983); Riboldi et al. section 2.1.
+Munk, NACA TR-184 (1924); Jones & DeLaurier, J. Aircraft 20 (1983); Riboldi et al. section 2.1; for spheres
+Coulombe-Pontbriand, Modeling and Experimental Characterization of a Tethered Spherical Aerostat, McGill (2005).
 """
 
 import abc
@@ -24,7 +28,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from tethership.spatial import Wrench
+from tethership.spatial import Wrench, safe_norm
 
 
 class SliceIntegrals(eqx.Module):
@@ -102,6 +106,8 @@ class AbstractEnvelope(eqx.Module):
         C_Dc [-], on 2r.
     axial_drag_area : float
         S_h C_Dh0 [m²].
+    isotropic_drag_area : float or None
+        ¼πD² C_D [m²] of a hull that is nearly a sphere, in place of axial and cross-flow drag; None for a slender one.
     """
 
     centre: eqx.AbstractVar[Float[Array, "3"]]
@@ -113,6 +119,7 @@ class AbstractEnvelope(eqx.Module):
     strip_area: eqx.AbstractVar[Float[Array, "strips"]]
     cross_flow_drag_coefficient: eqx.AbstractVar[Float[Array, ""]]
     axial_drag_area: eqx.AbstractVar[Float[Array, ""]]
+    isotropic_drag_area: eqx.AbstractVar[Float[Array, ""] | None]
 
     @abc.abstractmethod
     def potential(self, air_velocity: Float[Array, "3"], rates: Float[Array, "3"]) -> Wrench:
@@ -131,8 +138,11 @@ class AbstractEnvelope(eqx.Module):
         Notes
         -----
         df_⊥ = −½ C_Dc 2r |v_⊥(x)| v_⊥(x) dξ, f_x = −½ S_h C_Dh0 |u| u. |v_⊥| is guarded at zero by one part in
-        1e-16 of (1 m/s)², so that gradients are finite.
+        1e-16 of (1 m/s)², so that gradients are finite. Of a hull that is nearly a sphere f = −½ ¼πD² C_D |v| v, at B.
         """
+        if self.isotropic_drag_area is not None:
+            drag = -0.5 * self.isotropic_drag_area * safe_norm(air_velocity) * air_velocity
+            return Wrench(drag, jnp.zeros(3))
         u, v, w = air_velocity
         _, q, r = rates
         lateral = v + r * self.strip_position
@@ -183,6 +193,7 @@ class PublishedEnvelope(AbstractEnvelope):
     strip_area: Float[Array, "strips"]
     cross_flow_drag_coefficient: Float[Array, ""]
     axial_drag_area: Float[Array, ""]
+    isotropic_drag_area: Float[Array, ""] | None = None
 
     def potential(self, air_velocity: Float[Array, "3"], rates: Float[Array, "3"]) -> Wrench:
         """Return η_k u μ_x v_⊥ over 0 ≤ ξ ≤ l_h; arguments as in `AbstractEnvelope.viscous`."""
@@ -201,6 +212,7 @@ class ConsistentEnvelope(AbstractEnvelope):
     strip_area: Float[Array, "strips"]
     cross_flow_drag_coefficient: Float[Array, ""]
     axial_drag_area: Float[Array, ""]
+    isotropic_drag_area: Float[Array, ""] | None = None
 
     def potential(self, air_velocity: Float[Array, "3"], rates: Float[Array, "3"]) -> Wrench:
         """Return (η_k − 1) · slices ahead of l_h − slices behind; arguments as in `AbstractEnvelope.viscous`."""

@@ -114,6 +114,11 @@ def _envelope(
     strips = hull.strips(nose, cut, STRIPS)
     reference_area = jnp.asarray(config.buoyancy.volume) ** (2.0 / 3.0)
     kind = ConsistentEnvelope if formulation == "consistent" else PublishedEnvelope
+    drag = config.envelope
+    isotropic = None if drag.drag_coefficient is None else 0.25 * jnp.pi * hull.diameter**2 * drag.drag_coefficient
+    axial, cross_flow = (
+        0.0 if c is None else c for c in (drag.axial_drag_coefficient, drag.cross_flow_drag_coefficient)
+    )
     return kind(
         centre=centre,
         munk_factor=factors.lateral - factors.axial,
@@ -122,8 +127,9 @@ def _envelope(
         slice_efficiency=jnp.asarray(config.envelope.slice_efficiency),
         strip_position=station - strips.station,
         strip_area=2.0 * strips.radius * strips.width,
-        cross_flow_drag_coefficient=jnp.asarray(config.envelope.cross_flow_drag_coefficient),
-        axial_drag_area=reference_area * config.envelope.axial_drag_coefficient,
+        cross_flow_drag_coefficient=jnp.asarray(cross_flow),
+        axial_drag_area=reference_area * axial,
+        isotropic_drag_area=isotropic,
     )
 
 

@@ -3,6 +3,7 @@
 import copy
 import dataclasses
 import json
+import warnings
 from collections.abc import Iterable, Mapping
 from importlib import resources
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from tethership.control import LayeredLaw
-from tethership.errors import ConfigError, shown, suggestion
+from tethership.errors import ConfigError, TethershipWarning, shown, suggestion
 from tethership.scenario.build import assemble
 from tethership.scenario.changes import Document, change
 from tethership.scenario.control_schema import check_layers
@@ -164,6 +165,11 @@ def load_scenario(name: str = "docking", changes: Mapping[str, Any] | None = Non
     ConfigError
         Not found, not TOML, or a key, unit or value that cannot be.
 
+    Warns
+    -----
+    TethershipWarning
+        The drag of a hull that is nearly a sphere is split into axial and cross-flow drag.
+
     Examples
     --------
     >>> import tethership as ts
@@ -187,7 +193,11 @@ def load_scenario(name: str = "docking", changes: Mapping[str, Any] | None = Non
         raise ConfigError(f"{origin}: changes is {shown(own_changes)}; give a table, [changes], of dotted names")
     for key, value in {**own_changes, **changes}.items():
         change(document, key, value, origin)
-    return from_document(document, origin)
+    scenario = from_document(document, origin)
+    doubt = scenario.config.vehicle.drag_warning()
+    if doubt:
+        warnings.warn(doubt, TethershipWarning, stacklevel=2)
+    return scenario
 
 
 def from_document(document: Document, origin: str, changes: Mapping[str, Any] | None = None) -> Scenario:

@@ -107,13 +107,28 @@ class LambConfig(Table):
 ApparentMassConfig = Annotated[FactorsConfig | LambConfig, Field(discriminator="model")]
 
 
+SLENDER = 1.5
+"""Length over diameter [-] from which the drag of a hull may be split into axial and cross-flow drag."""
+
+
 class EnvelopeConfig(Table):
     """Hull loads besides apparent mass."""
 
-    axial_drag_coefficient: NotNegative
-    cross_flow_drag_coefficient: NotNegative
+    axial_drag_coefficient: NotNegative | None = None
+    cross_flow_drag_coefficient: NotNegative | None = None
+    drag_coefficient: NotNegative | None = None
     slice_efficiency: NotNegative
     potential_length: Length
+
+    @model_validator(mode="after")
+    def _one_drag(self) -> "EnvelopeConfig":
+        split = [self.axial_drag_coefficient is not None, self.cross_flow_drag_coefficient is not None]
+        if not (all(split) if self.drag_coefficient is None else not any(split)):
+            raise ValueError(
+                "give axial_drag_coefficient and cross_flow_drag_coefficient, or for a hull that is nearly a sphere "
+                "drag_coefficient alone"
+            )
+        return self
 
 
 class FinConfig(Table):
@@ -185,6 +200,21 @@ class VehicleConfig(Table):
     fins: tuple[FinConfig, ...] = ()
     thrusters: tuple[ThrusterConfig, ...] = ()
 
+    @property
+    def fineness(self) -> float:
+        """Length over largest diameter of the hull [-]."""
+        return self.hull.length / self.hull.diameter
+
+    def drag_warning(self) -> str | None:
+        """Return what is wrong with axial and cross-flow drag on a hull that is nearly a sphere, or None."""
+        if self.envelope.drag_coefficient is not None or self.fineness >= SLENDER:
+            return None
+        return (
+            f"{self.name}: the hull is only {self.fineness:.3g} times as long as wide, and its drag is split into "
+            f"axial and cross-flow drag, which holds from {SLENDER} on: a sphere so has lift; give "
+            "envelope.drag_coefficient, on the frontal area, instead of the two"
+        )
+
     @model_validator(mode="after")
     def _hull_is_one(self) -> "VehicleConfig":
         coefficients = _profile(self.hull)
@@ -208,6 +238,11 @@ class VehicleConfig(Table):
             raise ValueError(
                 f"envelope.potential_length {self.envelope.potential_length:g} m is beyond the hull's length "
                 f"{self.hull.length:g} m"
+            )
+        if self.envelope.drag_coefficient is not None and self.fineness >= SLENDER:
+            raise ValueError(
+                f"envelope.drag_coefficient is for a hull that is nearly a sphere, and this one is {self.fineness:.3g} "
+                f"times as long as wide (below {SLENDER}); give axial_drag_coefficient and cross_flow_drag_coefficient"
             )
         check_apart((part.name for part in (*self.fins, *self.thrusters)), "fins or thrusters")
         return self

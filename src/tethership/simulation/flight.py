@@ -4,7 +4,7 @@ import dataclasses
 import functools
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import jax
 import jax.numpy as jnp
@@ -13,6 +13,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from tethership.results import docking_metrics, store
+from tethership.results.columns import to_frame
 from tethership.scenario import ScenarioConfig
 from tethership.scenario.load import validated
 from tethership.scenario.solver import SolverConfig
@@ -22,6 +23,9 @@ from tethership.simulation.events import MARGINS, StopConditions
 from tethership.simulation.integrate import SAMPLES, Segment, Stepping, fly_segment
 from tethership.simulation.interrupt import Interruption
 from tethership.simulation.outcome import Outcome
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Progress = Callable[[float], None]
 """Called with the time reached [s] after each segment."""
@@ -91,6 +95,15 @@ class Flight:
     def docking_time(self) -> float | None:
         """Time at which the ship was docked [s], None if it was not."""
         return float(self.data["time"][-1]) if self.outcome is Outcome.docked else None
+
+    def to_frame(self) -> "pd.DataFrame":
+        """Return all outputs as a pandas table: a row an instant, index `time [s]`, columns like `tension_nose [N]`.
+
+        Notes
+        -----
+        SI and radians; the names are made as `results.columns` says.
+        """
+        return to_frame(self.data)
 
     def save(self, path: str | Path) -> None:
         """Write the flight to netCDF; raises ConfigError where it cannot be written."""

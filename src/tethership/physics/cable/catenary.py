@@ -35,6 +35,9 @@ MOST_ITERATIONS = 30
 CONVERGED = 1e-9
 """Relative step below which the next Newton step, being quadratic, would be rounding."""
 
+LARGE = 5.0
+"""z [-] above which 1 − tanh z and 1 − coth²z are written without cancellation; an almost plumb cable has up to 30."""
+
 _TINY = 1e-300
 
 
@@ -139,6 +142,21 @@ def _langevin(z: Float[Array, ""]) -> Float[Array, ""]:
     return jnp.where(small, series, 1.0 / jnp.tanh(safe) - 1.0 / safe)
 
 
+@jax.custom_jvp
+def _tanh(z: Float[Array, ""]) -> Float[Array, ""]:
+    """Return tanh z with a slope that is accurate for a large z too."""
+    return jnp.tanh(z)
+
+
+@_tanh.defjvp
+def _tanh_jvp(
+    primals: tuple[Float[Array, ""]], tangents: tuple[Float[Array, ""]]
+) -> tuple[Float[Array, ""], Float[Array, ""]]:
+    (z,), (z_dot,) = primals, tangents
+    tanh, decay = jnp.tanh(z), jnp.exp(-2.0 * z)
+    return tanh, (z_dot + z_dot * tanh) * jnp.where(z < LARGE, 1.0 - tanh, 2.0 * decay / (1.0 + decay))
+
+
 @root.defjvp
 def _root_jvp(
     primals: tuple[Float[Array, ""], ...], tangents: tuple[Float[Array, ""], ...]
@@ -151,10 +169,10 @@ def _root_jvp(
     coth = 1.0 / jnp.tanh(z)
     shape = 1.0 + half * coth
     ratio = along / shape
-    square = jnp.maximum(1.0 - ratio**2, 0.0)
-    square = jnp.where(across > 1e-8, across * (jnp.sinh(jnp.minimum(z, 300.0)) / (z + half)) ** 2, square)
+    sinh = jnp.sinh(jnp.minimum(z, 300.0))
+    square = across * (sinh / (z + half)) ** 2
     log_a_slope = _langevin(z) + half / (z * (z + half))
-    shape_slope = half * (1.0 - coth**2)
+    shape_slope = half * jnp.where(z < LARGE, 1.0 - coth**2, -1.0 / sinh**2)
     denominator = 2.0 * square * log_a_slope - 2.0 * ratio**2 * shape_slope / shape
     numerator = (
         square * across_dot / across
@@ -198,7 +216,7 @@ def end_forces(
     along, across, squared, weight = split(span, length, load)
     stretch = weight * length * compliance
     z = root(squared, along, stretch)
-    ship = -weight / (2.0 * z + stretch) * across + 0.5 * length * (1.0 + along / (jnp.tanh(z) + 0.5 * stretch)) * load
+    ship = -weight / (2.0 * z + stretch) * across + 0.5 * length * (1.0 + along / (_tanh(z) + 0.5 * stretch)) * load
     return CableForce(ship, length * load - ship)
 
 

@@ -27,7 +27,8 @@ class CableForce(NamedTuple):
     ship : Float[Array, "3"]
         Force of the cable on the ship F_TP [N].
     anchor : Float[Array, "3"]
-        Force of the cable on the anchor F_AP [N]; F_TP + F_AP = L l.
+        Force of the cable on the anchor F_AP [N]. At rest F_TP + F_AP = L l, which `ElasticCatenary` always holds and
+        `PublishedTension` only below e_c.
     """
 
     ship: Float[Array, "3"]

@@ -8,6 +8,9 @@ Depends on: physics.cable.catenary.
 
 The joint is only C⁰, so eigenvalues jump at e_c; and K₀(e_e − e_c) = 4186 N is beyond the breaking force, so an
 unbroken cable of the paper never leaves it.
+
+Beyond e_c the law loses weight and wind: F_TP + F_AP = (1 − (e − e_c)/(e_e − e_c)) L l. The paper's cable, 15.7 N,
+weighs 7.8 N at e = 1.02 and 4.3 N when it breaks. For a heavy or long cable that comes taut take `ElasticCatenary`.
 """
 
 import jax.numpy as jnp
@@ -18,7 +21,7 @@ from tethership.physics.cable.law import AbstractTensionLaw, CableForce, regular
 
 
 class PublishedTension(AbstractTensionLaw):
-    """Tension law of the `published` formulation.
+    """Tension law of the `published` formulation; beyond e_c both ends together carry less than the cable's load.
 
     Attributes
     ----------

@@ -1,0 +1,58 @@
+"""`tethership export`: a flight as a table for other tools."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tethership.cli.common import JsonOption, print_json
+from tethership.errors import ConfigError
+
+EXAMPLE = "Example: tethership export windy/flight.nc --to mat"
+
+
+class Format(StrEnum):
+    """What a flight can be written as."""
+
+    csv = "csv"
+    parquet = "parquet"
+    mat = "mat"
+
+
+def export(
+    flight: Annotated[Path, typer.Argument(metavar="FLIGHT", help="A flight (flight.nc).")],
+    to: Annotated[Format, typer.Option("--to", help="Format of the table.")] = Format.csv,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="PATH", help="File, or folder for it. Default: beside the flight, by its name."),
+    ] = None,
+    json: JsonOption = False,
+) -> None:
+    """Write the histories of a flight as one table for other tools: a row an instant, units in the names.
+
+    In MATLAB the columns are variables and their units are in the struct `units`. Parquet needs pyarrow.
+    """
+    from tethership.results.columns import write_table
+    from tethership.simulation import Flight
+
+    if flight.is_dir():
+        raise ConfigError(f"{flight} is a folder, not a flight; name a flight.nc that `dock` wrote")
+    path = _path(flight, to, out)
+    write_table(Flight.load(flight).to_frame(), path, to)
+    if json:
+        print_json({"files": [str(path)]})
+    else:
+        typer.echo(f"wrote {path}")
+
+
+def _path(flight: Path, to: Format, out: Path | None) -> Path:
+    """Return where the table is written."""
+    name = f"{flight.stem}.{to}"
+    if out is None:
+        return flight.with_name(name)
+    if out.is_dir() or not out.suffix:
+        return out / name
+    if out.suffix.lower() != f".{to}":
+        raise ConfigError(f"--out {out} is no name for --to {to}: give one that ends in .{to}, or a folder")
+    return out
