@@ -164,7 +164,8 @@ def _stiff_links(config: ScenarioConfig) -> Iterable[str]:
 def _warnings(
     config: ScenarioConfig, found: Described, outcome: TrimOutcome, passed: dict[str, float]
 ) -> Iterable[str]:
-    """Yield what a user must know of a point: limits of tension that are passed, a cable below the ground."""
+    """Yield what a user must know of a point: how the wind was read, limits passed, a cable below the ground."""
+    yield from getattr(config.wind, "remarks", ())
     if outcome is TrimOutcome.no_equilibrium:
         return
     for cable, most in zip(config.cables, found.largest, strict=True):

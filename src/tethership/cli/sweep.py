@@ -272,7 +272,8 @@ def _lacking(found: "Sweep", point: int) -> str:
     """Return by how much a point fails to be a trim."""
     match found.outcomes[point].name:
         case "no_equilibrium":
-            return f"{np.abs(found.residual[point]).max():.3g} N or N m left over"
+            left = np.abs(found.residual[point]).max()
+            return f"{left:.3g} N or N m left over" if np.isfinite(left) else "none that continues this line's"
         case "hull_below_ground":
             return f"hull {-found.clearance_hull[point]:.1f} m below the ground"
         case "cable_below_ground":

@@ -77,10 +77,11 @@ def tension(
     with np.errstate(all="ignore"):  # what is not finite is told below
         result = _computed(line, np.array(velocity), wind_vector, points)
     if not np.isfinite(result["tension"]):
+        with np.errstate(all="ignore"):
+            apart = float(np.linalg.norm(line.end - line.anchor))
         raise SolveError(
-            f"the tension between these ends is not finite: {reach:g} m of cable over "
-            f"{float(np.linalg.norm(line.end - place)):.3g} m are beyond what can be computed; check --end, --anchor "
-            "and --length"
+            f"the tension between these ends is not finite: {reach:g} m of cable over {apart:.3g} m are beyond what "
+            "can be computed; check --end, --anchor and --length"
         )
     if folder is not None:
         (folder / "tension.json").write_text(json_text(result), encoding="utf-8")

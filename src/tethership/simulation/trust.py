@@ -99,7 +99,7 @@ def verdict(flight: Flown) -> str:
 
 
 def warnings(flight: Flown) -> list[str]:
-    """Return what must be known besides the verdict: cable below the ground, the ranges of the cable and the wind."""
+    """Return what must be known besides the verdict: the record of the wind, cable below the ground, model ranges."""
     time, dips = flight.data["time"].to_numpy(), flight.data["cable_clearance"].to_numpy()
     said = [quasi_static_warning(flight), record_warning(flight.config.wind, float(time[-1]) if len(time) else 0.0)]
     if dips.size and dips.min() < -DIP:
@@ -109,4 +109,4 @@ def warnings(flight: Flown) -> list[str]:
             f"a cable dips below the ground for {below:.1f} s, by up to {-dips.min():.2f} m; its pull is that of a "
             "cable hanging free, for contact with the ground is not modelled",
         )
-    return [line for line in said if line]
+    return [*getattr(flight.config.wind, "remarks", ()), *(line for line in said if line)]
