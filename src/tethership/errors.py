@@ -20,3 +20,7 @@ class ConfigError(TethershipError):
 
 class SolveError(TethershipError):
     """A computation has no answer (no equilibrium, diverged flight) and the caller asked for an exception."""
+
+
+class TethershipWarning(UserWarning):
+    """What a user should know of a file or result that is given all the same; the command says it in one line."""

@@ -1,7 +1,8 @@
 """The command `tethership`. Exits 0 on success, 2 on wrong input, 3 when a computation has no answer."""
 
 import sys
-from typing import Annotated
+import warnings
+from typing import Annotated, Any
 
 import typer
 
@@ -22,7 +23,7 @@ from tethership.cli import (
     view,
 )
 from tethership.cli.common import NO_ANSWER, WRONG_INPUT
-from tethership.errors import ConfigError, SolveError
+from tethership.errors import ConfigError, SolveError, TethershipWarning
 
 INTERRUPTED = 130
 """What typer returns after Ctrl-C."""
@@ -71,8 +72,20 @@ def _fail(message: str, code: int) -> None:
     sys.exit(code)
 
 
+def _show_warning(message: Warning | str, *where: Any) -> None:
+    """Print what the package warns of as one line on standard error."""
+    if isinstance(message, TethershipWarning):
+        typer.echo(f"tethership: warning: {' '.join(str(message).split())}", err=True)
+    else:
+        _PLAIN(message, *where)
+
+
+_PLAIN = warnings.showwarning
+
+
 def main() -> None:
     """Run the command with the promised exit codes and one clear line for wrong input."""
+    warnings.showwarning = _show_warning
     try:
         code = app(prog_name="tethership", standalone_mode=False)
     except ConfigError as error:

@@ -19,6 +19,7 @@ from tethership.cli.common import (
 )
 from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
 from tethership.errors import ConfigError
+from tethership.results.files import write_atomically
 from tethership.results.schema import GROUND, REGIMES
 from tethership.scenario import Scenario
 
@@ -63,7 +64,7 @@ def tension(
     place = np.array(chosen.anchor if anchor is None else anchor)
     result = _computed(loaded, index, np.array(end), place, reach, np.array(velocity), wind_vector)
     if folder is not None:
-        (folder / "tension.json").write_text(json_text(result), encoding="utf-8")
+        write_atomically(folder / "tension.json", json_text(result))
     rows = _rows(result)
     write_rows(csv, rows)
     if json:
