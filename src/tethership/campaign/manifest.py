@@ -22,8 +22,8 @@ MANIFEST = "campaign.json"
 class Manifest(BaseModel):
     """What a campaign is.
 
-    `digest` is of everything that goes into its numbers, `input` of the values of its cases; version 0.1 wrote no
-    `input` and no `lanes`.
+    `digest` is of everything that goes into its numbers, `input` of the values of its cases, whose names are `inputs`;
+    version 0.1 wrote neither these two nor `lanes`.
     """
 
     model_config = ConfigDict(strict=True)
@@ -38,6 +38,7 @@ class Manifest(BaseModel):
     scenario: dict[str, Any]
     lanes: Annotated[int, Field(ge=1)] | None = None
     input: str | None = None
+    inputs: list[str] | None = None
 
     def rows(self, number: int) -> tuple[int, slice]:
         """Return law and cases of a batch."""
@@ -64,6 +65,7 @@ def write_manifest(folder: Path, plan: Plan, cure: str) -> None:
         "scenario": plan.scenario.document,
         "lanes": plan.lanes,
         "input": array_digest(plan.values),
+        "inputs": list(plan.names),
     }
     write_atomically(folder / MANIFEST, json.dumps(sealed(manifest), indent=1), cure)
 

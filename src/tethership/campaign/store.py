@@ -223,7 +223,8 @@ def _loaded(path: Path, manifest: Manifest) -> xr.Dataset:
             sizes = {str(dim): size for dim, size in data.sizes.items()}
             whole = (sizes.get("law"), sizes.get("case")) == (len(manifest.laws), manifest.cases)
             inner = [size for dim, size in sizes.items() if dim not in ("law", "case")]
-            named = len(data.attrs["inputs"]) == sizes.get("quantity")
+            names = data.attrs["inputs"]
+            named = len(names) == sizes.get("quantity") and names == (manifest.inputs or names)
             if not whole or not named or max(inner, default=0) > MOST_ITEMS:
                 raise ValueError(f"sizes {sizes}")
             return data.load()

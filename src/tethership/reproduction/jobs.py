@@ -106,6 +106,7 @@ def run_jobs(
     fresh : bool
         Do all of them again.
     """
+    (folder / "parts").mkdir(parents=True, exist_ok=True)
     digest = source_digest()
     keys = {name: _key(digest, settings, name) for name in jobs}
     anew: dict[str, bool] = {}
