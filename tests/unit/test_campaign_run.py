@@ -22,6 +22,7 @@ from tethership.campaign.plan import make_plan
 from tethership.campaign.store import CampaignStore, open_results, whole_results
 from tethership.campaign.work import fly_one
 from tethership.errors import ConfigError
+from tethership.results.seal import sealed
 from tethership.scenario.load import packaged_text
 from tethership.simulation.batch import CODES
 
@@ -176,7 +177,7 @@ def test_a_store_of_another_version_is_refused(whole, tmp_path, plan):
     shutil.copytree(whole[0], folder)
     manifest = json.loads((folder / "campaign.json").read_text())
     manifest |= {"tethership": "0.0.1", "digest": "x"}
-    (folder / "campaign.json").write_text(json.dumps(manifest))
+    (folder / "campaign.json").write_text(json.dumps(sealed(manifest)))
     with pytest.raises(ConfigError, match=re.escape("a campaign of tethership 0.0.1")):
         CampaignStore(folder, plan)
 

@@ -4,7 +4,6 @@ Depends on: pydantic, results, campaign.plan.
 """
 
 import json
-import warnings
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from tethership._version import __version__
 from tethership.campaign.plan import Plan, lanes_for
-from tethership.errors import ConfigError, TethershipWarning
+from tethership.errors import ConfigError
 from tethership.results.files import write_atomically
 from tethership.results.seal import array_digest, is_whole, sealed
 
@@ -45,6 +44,11 @@ class Manifest(BaseModel):
         lanes = self.lanes or lanes_for(self.cases)
         law, place = divmod(number, -(-self.cases // lanes))
         return law, slice(place * lanes, min((place + 1) * lanes, self.cases))
+
+    @property
+    def unsealed(self) -> bool:
+        """Whether version 0.1 wrote it, which had no checksums."""
+        return self.input is None
 
     @property
     def batches(self) -> int:
@@ -88,9 +92,7 @@ def read_manifest(folder: Path) -> Manifest | None:
     except (OSError, ValueError, RecursionError) as error:
         first = error.errors(include_url=False)[0]["msg"] if isinstance(error, ValidationError) else error
         raise ConfigError(f"cannot read {path}: {first}; fly it again, or into another --out") from error
-    if whole is None:
-        warnings.warn(f"{path}: written by tethership 0.1, without a checksum", TethershipWarning, stacklevel=3)
-    elif not whole:
+    if whole is False:
         raise ConfigError(
             f"{path} is damaged or was changed: it has not the checksum it was written with; fly it again, or into "
             "another --out"

@@ -76,7 +76,7 @@ class CampaignStore:
     def __init__(self, folder: Path, plan: Plan) -> None:
         self.folder, self._plan = folder, plan
         known = owner(folder, plan)
-        if known is None:
+        if known is None or known.unsealed:
             write_manifest(folder, plan, CURE)
         self._arrays = Arrays(folder, plan)
         with self._said():
@@ -187,6 +187,8 @@ def open_results(folder: str | Path) -> xr.Dataset:
     manifest = read_manifest(folder)
     if manifest is None:
         raise ConfigError(f"{folder} holds no campaign; give the folder that `tethership campaign` wrote")
+    if manifest.unsealed:
+        warnings.warn(f"{folder}: written by tethership 0.1, without a checksum", TethershipWarning, stacklevel=2)
     loaded = _loaded(folder / RESULTS, manifest)
     _check_batches(folder, manifest, loaded)
     for name in set(UNITS) & set(loaded):
@@ -219,7 +221,7 @@ _AGAIN = "run the same command again, which flies again what is damaged"
 def _loaded(path: Path, manifest: Manifest) -> xr.Dataset:
     """Return what is in a group, or raise ConfigError where it is not what the campaign says."""
     try:
-        with xr.open_zarr(path, consolidated=False) as data:
+        with warnings.catch_warnings(action="ignore"), xr.open_zarr(path, consolidated=False) as data:
             sizes = {str(dim): size for dim, size in data.sizes.items()}
             whole = (sizes.get("law"), sizes.get("case")) == (len(manifest.laws), manifest.cases)
             inner = [size for dim, size in sizes.items() if dim not in ("law", "case")]
@@ -238,7 +240,7 @@ def _check_batches(folder: Path, manifest: Manifest, data: xr.Dataset) -> None:
     lost = sorted({name for mark in marks.values() if mark for name in mark.forms if name not in data})
     if lost:
         raise ConfigError(f"{folder / RESULTS} lacks {', '.join(lost)}; {_AGAIN}")
-    if manifest.input is not None and ("input" not in data or array_digest(data["input"].values) != manifest.input):
+    if not manifest.unsealed and ("input" not in data or array_digest(data["input"].values) != manifest.input):
         raise ConfigError(f"{folder / RESULTS} is damaged: its inputs are not those of the campaign; {_AGAIN}")
     damaged = [number for number, mark in marks.items() if not _holds(manifest, data, number, mark)]
     if damaged:
@@ -251,7 +253,7 @@ def _holds(manifest: Manifest, data: xr.Dataset, number: int, mark: Mark | None)
     if mark is not None:
         part = {name: data[name].values[law, rows] for name in mark.forms}
         return mark.campaign == manifest.digest and table_digest(part) == mark.values
-    return manifest.input is None and _can_be({name: data[name].values[law, rows] for name in UNITS if name in data})
+    return manifest.unsealed and _can_be({name: data[name].values[law, rows] for name in UNITS if name in data})
 
 
 def _can_be(part: Mapping[str, np.ndarray]) -> bool:

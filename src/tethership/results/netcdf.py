@@ -99,7 +99,7 @@ def _check_declared(path: Path, file: h5py.File) -> None:
         if item is None or (isinstance(item, h5py.Dataset) and (item.external or item.is_virtual)):
             raise ConfigError(f"{path} takes {name} from another file, which is not read; give a file that is whole")
         if isinstance(item, h5py.Dataset):
-            total += item.size * max(item.dtype.itemsize, 1) if item.shape is not None else 0
+            total += (item.size or 0) * max(item.dtype.itemsize, 1)
     if total > MOST_BYTES:
         raise ConfigError(
             f"{path} declares {total / 2**30:.3g} GiB of numbers; at most {MOST_BYTES / 2**30:g} GiB are read"
