@@ -74,7 +74,7 @@ class CampaignStore:
     """
 
     def __init__(self, folder: Path, plan: Plan) -> None:
-        self.folder, self._plan = folder, plan
+        self.folder, self._plan, self._digest = folder, plan, plan.digest()
         known = owner(folder, plan)
         if known is None or known.unsealed:
             write_manifest(folder, plan, CURE)
@@ -101,7 +101,7 @@ class CampaignStore:
         with self._said():
             for name, values in found.items():
                 self._arrays.output(name, Form.of(values))[batch.law, rows] = values
-        write_mark(self.folder, batch.number, self._plan.digest(), found, CURE)
+        write_mark(self.folder, batch.number, self._digest, found, CURE)
 
     def _drop_damaged(self) -> None:
         """Take away the marks of batches whose numbers are not those of their mark, and say so."""
@@ -121,7 +121,7 @@ class CampaignStore:
 
     def _is_whole(self, number: int, mark: Mark | None, stored: dict[str, Any]) -> bool:
         """Return whether the numbers of a batch are those of its mark; arrays that were read are kept in `stored`."""
-        if mark is None or mark.campaign != self._plan.digest():
+        if mark is None or mark.campaign != self._digest:
             return False
         batch = self._plan.batch(number)
         rows = slice(batch.first, batch.first + len(batch.values))
@@ -150,7 +150,8 @@ def owner(folder: Path, plan: Plan) -> Manifest | None:
     ConfigError
         It holds another campaign, or one of another version, or something else.
     """
-    ours = any(mark and mark.campaign == plan.digest() for mark in read_marks(folder, plan.batches).values())
+    digest = plan.digest()
+    ours = any(mark and mark.campaign == digest for mark in read_marks(folder, plan.batches).values())
     try:
         known = read_manifest(folder)
     except ConfigError:
@@ -160,7 +161,7 @@ def owner(folder: Path, plan: Plan) -> Manifest | None:
         return None
     if known is None and (folder / RESULTS).exists() and not ours:
         raise ConfigError(f"{folder / RESULTS} has no {MANIFEST} beside it; choose another --out")
-    if known is not None and known.digest != plan.digest():
+    if known is not None and known.digest != digest:
         other = known.tethership != __version__
         what = f"a campaign of tethership {known.tethership}" if other else "another campaign"
         raise ConfigError(
