@@ -17,10 +17,12 @@ import pytest
 import tethership as ts
 from tethership.campaign.answers import answer, exceeded, failed, undetermined
 from tethership.campaign.execute import fly_campaign, in_this_process
+from tethership.campaign.marks import Form
 from tethership.campaign.plan import make_plan
 from tethership.campaign.store import CampaignStore, open_results, whole_results
 from tethership.campaign.work import fly_one
 from tethership.errors import ConfigError
+from tethership.results.seal import sealed
 from tethership.scenario.load import packaged_text
 from tethership.simulation.batch import CODES
 
@@ -145,7 +147,7 @@ def test_a_batch_without_its_mark_is_flown_again(whole, tmp_path, plan):
     shutil.copytree(whole[0], folder)
     (folder / "finished" / "000001").unlink()
     store = CampaignStore(folder, plan)
-    store._array("tension_max", np.zeros(1))[0, 24:] = -1.0  # as a write cut off would leave it
+    store._arrays.output("tension_max", Form("<f8", ()))[0, 24:] = -1.0  # as a write cut off would leave it
     with in_this_process() as hands:
         assert fly_campaign(plan, store, hands) == 24
     same(whole[0], folder)
@@ -175,7 +177,7 @@ def test_a_store_of_another_version_is_refused(whole, tmp_path, plan):
     shutil.copytree(whole[0], folder)
     manifest = json.loads((folder / "campaign.json").read_text())
     manifest |= {"tethership": "0.0.1", "digest": "x"}
-    (folder / "campaign.json").write_text(json.dumps(manifest))
+    (folder / "campaign.json").write_text(json.dumps(sealed(manifest)))
     with pytest.raises(ConfigError, match=re.escape("a campaign of tethership 0.0.1")):
         CampaignStore(folder, plan)
 
@@ -188,7 +190,7 @@ def test_disk_full_keeps_what_is_done(tmp_path, plan, monkeypatch):
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(store, "_array", full)
+    monkeypatch.setattr(store._arrays, "output", full)
     with pytest.raises(ConfigError, match=r"No space left on device.*run the same command again"):
         store.keep(plan.batch(1), {"tension_max": np.ones(24)})
     assert open_results(tmp_path / "full")["tension_max"].values[0, :24].sum() == 24

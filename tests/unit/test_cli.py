@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import pytest
+from PIL import Image
 
 import tethership as ts
 from tethership.cli import main
@@ -276,3 +277,36 @@ def test_a_second_process_does_not_compile_again(tmp_path):
     assert first_misses > 0
     assert second_hits >= first_misses
     assert second_misses == 0
+
+
+def test_flight_picture_and_replay_are_of_one_run(run, tmp_path):
+    code, _, err = run("dock", "--set", "stop.time_limit=1", "--out", tmp_path)
+    assert code == 0, err
+    one = ts.Flight.load(tmp_path / "flight.nc").run
+    with Image.open(tmp_path / "docking.png") as picture:
+        assert picture.info["run"] == one
+    assert f'<meta name="tethership-run" content="{one}">' in (tmp_path / "replay.html").read_text(encoding="utf-8")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["docking.png", "flight.nc", "replay.html"]
+
+
+def test_what_cannot_be_drawn_costs_no_flight_and_leaves_no_older_picture(run, tmp_path, monkeypatch):
+    for name in ("docking.png", "replay.html"):
+        (tmp_path / name).write_text("of an earlier run")
+
+    def failing(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tethership.view.replay.replay_text", failing)
+    code, _, _ = run("dock", "--set", "stop.time_limit=1", "--out", tmp_path)
+    assert code == 3
+    assert [path.name for path in tmp_path.iterdir()] == ["flight.nc"]
+    assert float(ts.Flight.load(tmp_path / "flight.nc").data["time"][-1]) == 1.0
+
+
+def test_a_file_without_checksum_is_told_in_one_line(run, tmp_path, flight):
+    flight.data.assign_attrs(format=1).to_netcdf(tmp_path / "old.nc", engine="h5netcdf")
+    code, out, err = run("view", tmp_path / "old.nc", "--no-open", "--json")
+    assert (code, err.count("\n")) == (0, 1)
+    assert err.startswith("tethership: warning: ")
+    assert "without a checksum" in err
+    assert json.loads(out)["file"] == str(tmp_path / "old_replay.html")

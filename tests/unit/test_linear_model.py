@@ -11,7 +11,8 @@ import pytest
 import xarray as xr
 
 import tethership as ts
-from tethership.results import store
+from tethership.results import netcdf
+from tethership.results.schema import FLIGHT, LINEAR_MODEL
 from tethership.system import State
 from tethership.system.state import STATE_NAMES, STATE_UNITS
 
@@ -85,8 +86,8 @@ def test_file_of_a_part(model, tmp_path):
 
 
 def test_other_files_are_refused(model, tmp_path):
-    flight = xr.Dataset(attrs={"kind": store.KIND, "format": 1, "tethership_version": "0"})
-    store.write(flight, tmp_path / "flight.nc")
+    flight = xr.Dataset(attrs={"kind": FLIGHT.name, "format": 1, "tethership_version": "0"})
+    netcdf.write(flight, tmp_path / "flight.nc", FLIGHT)
     with pytest.raises(ts.ConfigError, match=r"flight\.nc is a netCDF file but no linear model of tethership"):
         ts.LinearModel.load(tmp_path / "flight.nc")
     model.save(tmp_path / "model.nc")
@@ -99,7 +100,7 @@ def test_other_files_are_refused(model, tmp_path):
         ts.LinearModel.load(tmp_path / "nothing.nc")
     newer = model.to_dataset()
     newer.attrs["format"] = 99
-    store.write(newer, tmp_path / "newer.nc")
+    netcdf.write(newer, tmp_path / "newer.nc", LINEAR_MODEL)
     with pytest.raises(ts.ConfigError, match=r"has layout 99 .* make it again"):
         ts.LinearModel.load(tmp_path / "newer.nc")
 

@@ -14,7 +14,9 @@ import xarray as xr
 
 from tethership._version import __version__
 from tethership.errors import ConfigError, suggestion
-from tethership.results import store
+from tethership.results import netcdf
+from tethership.results.schema import FORMAT, LINEAR_MODEL
+from tethership.results.seal import run_id
 from tethership.system.names import LENGTH, WIND_INPUTS
 
 if TYPE_CHECKING:
@@ -22,17 +24,23 @@ if TYPE_CHECKING:
 
     from tethership.analysis.modes import Modes
 
-KIND = "tethership linear model"
-"""What a file of a linear model says it is."""
+SHAPES = {
+    "A": ("state", "of_state"),
+    "U": ("state", "input"),
+    "comparable": ("state", "of_state"),
+    "state_value": ("state",),
+    "input_value": ("input",),
+}
+"""Numbers of a file and their dimensions."""
 
-FORMAT = 1
-"""Version of the layout of these files."""
+WORDS = ("state_unit", "input_unit")
+"""Words of such a file besides the names of its dimensions."""
 
-WHOLE = ("A", "U", "comparable", "state_value", "input_value", "state_unit", "input_unit")
-"""Variables of such a file."""
+MEASURED_SHAPES = {"C": ("output", "of_state"), "D": ("output", "input"), "output_value": ("output",)}
+"""Numbers that files of version 0.1 lack."""
 
-MEASURED = ("C", "D", "output_value", "output_unit", "input_is_control")
-"""Variables that files of version 0.1 lack."""
+MEASURED = (*MEASURED_SHAPES, "output_unit", "input_is_control")
+"""All that files of version 0.1 lack."""
 
 UNCONTROLLED = (*WIND_INPUTS, LENGTH)
 """How the names of inputs begin that nobody commands: the wind, and a cable's length unless its winch is an input."""
@@ -253,22 +261,28 @@ class LinearModel:
             "state_unit": ("state", list(self.state_units)),
             "input_unit": ("input", list(self.input_units)),
         }
-        header = {"kind": KIND, "format": FORMAT, "tethership_version": __version__}
+        header = {"kind": LINEAR_MODEL.name, "format": FORMAT, "tethership_version": __version__}
         return xr.Dataset(variables, coordinates, header | {"attributes": json.dumps(self.attributes, sort_keys=True)})
+
+    @property
+    def run(self) -> str:
+        """Id of this model in its file and pictures: a digest of its numbers and input."""
+        return run_id(self.to_dataset(), LINEAR_MODEL.own)
+
+    def content(self) -> bytes:
+        """Return the bytes of the model's netCDF file."""
+        return netcdf.content(self.to_dataset(), LINEAR_MODEL)
 
     def save(self, path: str | Path) -> None:
         """Write the model to netCDF; raises ConfigError where that cannot be."""
-        store.write(self.to_dataset(), Path(path))
+        netcdf.write(self.to_dataset(), Path(path), LINEAR_MODEL)
 
     @classmethod
     def load(cls, path: str | Path) -> "LinearModel":
         """Return the model of a file; raises ConfigError where it is none."""
-        data = store.read(Path(path), KIND, FORMAT)
-        names = set(map(str, data.variables))
-        old = not names & set(MEASURED)
-        missing = set(WHOLE if old else WHOLE + MEASURED) - names
-        if missing:
-            raise ConfigError(f"{path} is no whole linear model: {', '.join(sorted(missing))} is missing")
+        data = netcdf.read(Path(path), LINEAR_MODEL)
+        old = not set(map(str, data.variables)) & set(MEASURED)
+        attributes = _checked(data, str(path), SHAPES if old else SHAPES | MEASURED_SHAPES)
         inputs = tuple(map(str, data["input"].values))
         measured: tuple[Any, ...]
         if old:
@@ -292,9 +306,30 @@ class LinearModel:
             data["state_value"].values,
             data["input_value"].values,
             data["comparable"].values,
-            json.loads(data.attrs["attributes"]),
+            attributes,
             *measured,
         )
+
+
+def _checked(data: xr.Dataset, origin: str, shapes: dict[str, tuple[str, ...]]) -> dict[str, Any]:
+    """Return the attributes of a file's dataset, or raise ConfigError where it is no linear model of these shapes."""
+    wanted = {*shapes, *WORDS, *(MEASURED if "C" in shapes else ())}
+    missing = wanted - set(map(str, data.variables))
+    if missing:
+        raise ConfigError(f"{origin} is no whole linear model: {', '.join(sorted(missing))} is missing")
+    for name, dims in shapes.items():
+        variable = data.variables[name]
+        if variable.dims != dims or variable.dtype.kind != "f" or not np.isfinite(variable.values).all():
+            raise ConfigError(f"{origin} is no linear model: {name} is not finite numbers over {', '.join(dims)}")
+    if list(data["state"].values) != list(data["of_state"].values):
+        raise ConfigError(f"{origin} is no linear model: rows and columns of A have not the same states")
+    try:
+        attributes = json.loads(str(data.attrs["attributes"]))
+    except (KeyError, ValueError, RecursionError) as error:
+        raise ConfigError(f"{origin} is no linear model: its attributes are not readable") from error
+    if not isinstance(attributes, dict):
+        raise ConfigError(f"{origin} is no linear model: its attributes are no table")
+    return attributes
 
 
 def _places(chosen: Sequence[str], known: Sequence[str], what: str) -> list[int]:

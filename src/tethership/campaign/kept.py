@@ -13,12 +13,13 @@ from tethership.campaign.answers import failed
 from tethership.campaign.plan import Plan
 from tethership.campaign.work import fly_one
 from tethership.errors import ConfigError
+from tethership.simulation import Flight
 
 FOLDER = "flights"
 
 
 def keep_flights(plan: Plan, data: xr.Dataset, folder: Path) -> list[dict[str, Any]]:
-    """Fly the kept cases again, write each as netCDF, and return what they are; files that are there stand.
+    """Fly the kept cases again, write each as netCDF, and return what they are; files that are there and whole stand.
 
     Parameters
     ----------
@@ -35,13 +36,22 @@ def keep_flights(plan: Plan, data: xr.Dataset, folder: Path) -> list[dict[str, A
         for why, case in _chosen(plan, data, law):
             name = f"{plan.laws[law].name}_{case}.nc"
             entry = {"law": plan.laws[law].name, "case": case, "why": why, "file": str(Path(FOLDER) / name)}
-            if not (folder / FOLDER / name).exists():
+            if not _stands(folder / FOLDER / name):
                 try:
                     fly_one(plan.scenario, plan.names, plan.values[law, case]).save(folder / FOLDER / name)
                 except ConfigError as error:
                     entry |= {"file": None, "error": str(error)}
             found.append(entry)
     return found
+
+
+def _stands(path: Path) -> bool:
+    """Return whether a flight is there and as it was written."""
+    try:
+        Flight.load(path)
+    except ConfigError:
+        return False
+    return True
 
 
 def _chosen(plan: Plan, data: xr.Dataset, law: int) -> list[tuple[str, int]]:

@@ -21,6 +21,11 @@ from tethership.scenario.control_schema import LAYERS
 from tethership.scenario.load import read_document, validated
 
 
+def lanes_for(cases: int) -> int:
+    """Return how many flights of a campaign are flown at once: few where there are few."""
+    return FEW if cases <= 2 * FEW else BATCH
+
+
 class Batch(NamedTuple):
     """What one call flies.
 
@@ -110,7 +115,7 @@ class Plan(NamedTuple):
     @property
     def lanes(self) -> int:
         """Flights of one call."""
-        return FEW if self.cases <= 2 * FEW else BATCH
+        return lanes_for(self.cases)
 
     @property
     def batches(self) -> int:

@@ -11,8 +11,9 @@ from tethership.campaign.answers import answer
 from tethership.campaign.execute import Hands, Progress, fly_campaign, in_processes, in_this_process, on_cluster
 from tethership.campaign.kept import keep_flights
 from tethership.campaign.plan import Plan, make_plan
-from tethership.campaign.store import CampaignStore, whole_results
+from tethership.campaign.store import CampaignStore, owner, whole_results
 from tethership.errors import ConfigError
+from tethership.results.lock import held
 
 
 class Campaign(NamedTuple):
@@ -70,19 +71,22 @@ def run_campaign(
     Raises
     ------
     ConfigError
-        Anything in the file that cannot be; a folder that holds another campaign; a scheduler that does not answer.
+        Anything in the file that cannot be; a folder that holds another campaign, or in which one runs; a scheduler
+        that does not answer.
     SolveError
         A worker process died.
     """
     if workers is not None and scheduler is not None:
         raise ConfigError("workers and scheduler exclude each other; give one")
     plan = make_plan(name, dict(changes or {}), dict(scenario_changes or {}))
-    store = CampaignStore(Path(folder), plan)
-    with _hands(workers, scheduler)() as hands:
-        flown = fly_campaign(plan, store, hands, progress)
-    data = whole_results(folder)
-    answers = answer(plan, data, confidence)
-    answers["kept"] = keep_flights(plan, data, Path(folder))
+    owner(Path(folder), plan)
+    with held(Path(folder)):
+        store = CampaignStore(Path(folder), plan)
+        with _hands(workers, scheduler)() as hands:
+            flown = fly_campaign(plan, store, hands, progress)
+        data = whole_results(folder)
+        answers = answer(plan, data, confidence)
+        answers["kept"] = keep_flights(plan, data, Path(folder))
     return Campaign(plan, data, answers, flown)
 
 

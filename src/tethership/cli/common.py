@@ -13,6 +13,7 @@ import typer
 
 from tethership.cli.completion import complete_formulation, complete_parameter, complete_scenario
 from tethership.errors import ConfigError, shown
+from tethership.results.files import check_writable
 from tethership.scenario import Scenario, load_scenario
 from tethership.scenario.quantity import number_with_unit
 from tethership.scenario.reading import parse_json
@@ -141,12 +142,9 @@ def stage(name: str) -> Iterator[None]:
 
 
 def writable_folder(folder: Path) -> Path:
-    """Return the folder, made if need be; raises ConfigError before any work if nothing can be written there."""
+    """Return the folder; raises ConfigError before any work if nothing can be written there. Nothing is made yet."""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / ".tethership-probe"
-        probe.write_bytes(b"")
-        probe.unlink()
+        check_writable(folder)
     except OSError as error:
         raise ConfigError(
             f"cannot write into {folder}: {error.strerror or error}; choose another folder with --out"

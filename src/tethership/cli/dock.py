@@ -24,6 +24,7 @@ from tethership.cli.completion import complete_layers, complete_solver
 from tethership.cli.points import trimmed_start, warn
 from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
 from tethership.errors import ConfigError
+from tethership.results.files import write_together
 from tethership.scenario import Scenario
 from tethership.scenario.load import read_solver
 
@@ -83,10 +84,10 @@ def dock(
         flight = _flown(flown_scenario, point, names, False if no_sas else None, solver)
         if point.saturated:
             typer.echo(f"tethership: warning: the start is no equilibrium. {point.message}", err=True)
-    flight.save(out / "flight.nc")
+    written = _written(flight, out)
     result = summary(flown_scenario, flight) | {"trim_outcome": trim_outcome}
     rows = _rows(result, flight)
-    result["files"] = [str(out / "flight.nc"), *_drawn(flight, out), *write_rows(csv, rows)]
+    result["files"] = [*written, *write_rows(csv, rows)]
     if json:
         print_json(result)
     else:
@@ -149,18 +150,37 @@ def _again(path: Path) -> tuple[Scenario, "Flight", str]:
     return scenario, flight, "stored"
 
 
-def _drawn(flight: "Flight", out: Path) -> list[str]:
-    """Draw picture and replay and return their paths; a flight too short to draw has none."""
-    from tethership.view import plot_docking, write_replay
+def _written(flight: "Flight", out: Path) -> list[str]:
+    """Write flight, picture and replay in one go and return their paths; what cannot be drawn is taken away."""
+    files: dict[Path, str | bytes | None] = {out / "flight.nc": flight.content()}
+    picture, replay = out / "docking.png", out / "replay.html"
+    try:
+        files |= {picture: _picture(flight), replay: _replay(flight)}
+    except BaseException:  # an interruption or a fault of the drawing costs the pictures, never the flight
+        write_together(files | {picture: None, replay: None})
+        raise
+    return [str(path) for path in write_together(files)]
+
+
+def _picture(flight: "Flight") -> bytes | None:
+    """Return the picture; a flight too short to draw has none."""
+    from tethership.view import plot_docking
+    from tethership.view.picture import png
 
     if flight.data.sizes["time"] < 2:
-        return []
+        return None
     with stage("draw"):
-        path = out / "docking.png"
-        plot_docking(flight).savefig(path, dpi=120)
+        return png(plot_docking(flight), 120, flight.run)
+
+
+def _replay(flight: "Flight") -> str | None:
+    """Return the page of the replay; a flight too short to draw has none."""
+    from tethership.view.replay import replay_text
+
+    if flight.data.sizes["time"] < 2:
+        return None
     with stage("replay"):
-        replay = write_replay(flight, out / "replay.html")
-    return [str(path), str(replay)]
+        return replay_text(flight)
 
 
 def summary(scenario: Scenario, flight: "Flight") -> dict[str, Any]:

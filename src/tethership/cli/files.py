@@ -1,5 +1,6 @@
 """`tethership validate` and `new`: checking a file, a copy to edit."""
 
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -8,6 +9,7 @@ import typer
 from tethership.cli.common import JsonOption, print_json
 from tethership.cli.completion import complete_scenario
 from tethership.errors import ConfigError
+from tethership.results.files import write_atomically
 from tethership.scenario.load import check_file, packaged_text, read_document
 from tethership.scenario.names import check_title
 
@@ -59,14 +61,10 @@ def new(
         out / f"{given}_vehicle.toml": packaged_text("vehicles", source),
     }
     for path in texts:
-        if path.exists():
+        if os.path.lexists(path):
             raise ConfigError(f"{path} exists already; nothing is overwritten: choose another name or folder")
     for path, content in texts.items():
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(content, encoding="utf-8")
-        except OSError as error:
-            raise ConfigError(f"cannot write {path}: {error.strerror or error}; choose --out") from error
+        write_atomically(path, content, new=True)
     if json:
         print_json({"files": [str(path) for path in texts]})
     else:

@@ -18,6 +18,7 @@ from tethership.cli.common import (
 from tethership.cli.progress import progress_bar
 from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
 from tethership.errors import ConfigError
+from tethership.results.files import write_together
 
 EXAMPLE = "Example: tethership identify --formulation published --out fit"
 
@@ -72,9 +73,8 @@ def identify(
             document["variants"] = refit_all(loaded, document, report)
     fit_file = out / f"identified_{loaded.formulation}.json"
     vehicle_file = out / f"lotte_identified_{loaded.formulation}.toml"
-    fit_file.write_text(fit_text(document), encoding="utf-8")
-    vehicle_file.write_text(vehicle_of(document), encoding="utf-8")
-    document["files"] = [str(fit_file), str(vehicle_file), *write_rows(csv, [*_fitted(document), *_quality(document)])]
+    written = write_together({fit_file: fit_text(document), vehicle_file: vehicle_of(document)})
+    document["files"] = [*map(str, written), *write_rows(csv, [*_fitted(document), *_quality(document)])]
     if json:
         print_json(document)
     else:

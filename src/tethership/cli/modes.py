@@ -22,6 +22,7 @@ from tethership.cli.common import (
 from tethership.cli.points import balanced, point_keys, warn
 from tethership.cli.tables import CsvOption, writable_csv, write_csv
 from tethership.errors import ConfigError, suggestion
+from tethership.results.files import write_together
 
 if TYPE_CHECKING:
     from tethership.analysis import LinearModel, Mode, Modes, Sensitivities
@@ -74,12 +75,13 @@ def modes(
     head = point_keys(point) | {"wind": loaded.config.wind.speed, "formulation": loaded.formulation}
     result = head | summary(model, found) | ({} if ranked is None else {"sensitivity": _ranked(ranked)})
     if folder is not None:
-        (folder / "modes.json").write_text(json_text(result), encoding="utf-8")
-        model.save(folder / "model.nc")
         with stage("draw"):
             from tethership.view.mode_shape import plot_all_modes
+            from tethership.view.picture import png
 
-            plot_all_modes(model).savefig(folder / "modes.png", dpi=120)
+            drawn = png(plot_all_modes(model), 120, model.run)
+        files = {"model.nc": model.content(), "modes.json": json_text(result), "modes.png": drawn}
+        write_together({folder / name: content for name, content in files.items()})
     write_csv(csv, COLUMNS, ([values[key] for key in COLUMNS] for values in map(_numbers, found.modes)))
     if json:
         print_json(result)

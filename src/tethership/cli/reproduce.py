@@ -13,6 +13,8 @@ from tethership.cli.common import JsonOption, json_text, print_json, writable_fo
 from tethership.cli.progress import progress_bar
 from tethership.cli.tables import CsvOption, writable_csv, write_csv
 from tethership.errors import ConfigError, suggestion
+from tethership.results.files import write_atomically
+from tethership.results.lock import held
 
 if TYPE_CHECKING:
     from tethership.reproduction.jobs import Job, Settings
@@ -71,7 +73,7 @@ def reproduce(
     writable_folder(out)
     writable_csv(csv)
     begun = time.perf_counter()
-    with progress_bar("reproduce") as report:
+    with held(out), progress_bar("reproduce") as report:
         anew = run_jobs(jobs, out, settings, report, fresh)
         report("report", 1.0)
         parts, left_out = _in_the_report(out, settings, jobs)
@@ -87,7 +89,7 @@ def reproduce(
         if name in parts:
             result[name] = load_part(out, name)
     result["counts"] = _counts(result)
-    (out / "tables.json").write_text(json_text(result), encoding="utf-8")
+    write_atomically(out / "tables.json", json_text(result))
     keys = ("wind", "metric", "published", "computed", "ratio", "verdict", "held_out")
     rows = ([name, *(row[key] for key in keys)] for name, table in result["tables"].items() for row in table)
     result["files"] = [str(path), str(out / "tables.json"), *write_csv(csv, ("table", *keys), rows)]

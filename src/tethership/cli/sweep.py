@@ -27,6 +27,7 @@ from tethership.cli.completion import complete_parameter
 from tethership.cli.points import warn
 from tethership.cli.tables import CsvOption, writable_csv, write_csv
 from tethership.errors import ConfigError, shown
+from tethership.results.files import write_together
 from tethership.scenario import Scenario
 from tethership.scenario.quantity import number_with_unit
 from tethership.scenario.reading import parse_json
@@ -103,12 +104,14 @@ def _swept(scenario: Scenario, axes: list[dict[str, np.ndarray]], out: Path) -> 
     head = {"wind": scenario.config.wind.speed, "formulation": scenario.formulation}
     result = head | summary(found)
     with stage("draw"):
-        from tethership.view.interactive import interactive_root_locus, write_page
+        from tethership.view.interactive import interactive_root_locus, page
+        from tethership.view.picture import png
         from tethership.view.root_locus import plot_root_loci
 
-        plot_root_loci(found).savefig(out / "root_locus.png", dpi=120)
-        write_page(interactive_root_locus(found, scenario.config.title), out / "root_locus.html")
-    result["files"] = [str(out / "root_locus.png"), str(out / "root_locus.html")]
+        drawn = page(interactive_root_locus(found, scenario.config.title))
+        picture = png(plot_root_loci(found), 120)
+    pair = write_together({out / "root_locus.png": picture, out / "root_locus.html": drawn})
+    result["files"] = [str(path) for path in pair]
     return result, [found]
 
 
@@ -124,13 +127,13 @@ def _figures(
         with stage(f"figure {number}, {name}"):
             drawn = linear_figure(number, name, changes)
         with stage("draw"):
-            from tethership.view.interactive import interactive_linear_figure, write_page
+            from tethership.view.interactive import interactive_linear_figure, page
+            from tethership.view.picture import png
             from tethership.view.root_locus import plot_linear_figure
 
-            stem = out / f"figure_{number:02d}_{name}"
-            plot_linear_figure(drawn).savefig(f"{stem}.png", dpi=120)
-            write_page(interactive_linear_figure(drawn), Path(f"{stem}.html"))
-        files += [f"{stem}.png", f"{stem}.html"]
+            stem = f"figure_{number:02d}_{name}"
+            picture, explored = png(plot_linear_figure(drawn), 120), page(interactive_linear_figure(drawn))
+        files += map(str, write_together({out / f"{stem}.png": picture, out / f"{stem}.html": explored}))
         sweeps += [panel.sweep for panel in drawn.panels]
         shown[name] = [{"title": panel.title, **summary(panel.sweep)} for panel in drawn.panels]
     first = next(iter(shown))

@@ -1,6 +1,9 @@
 """Tables of the command line: printed for people, written as CSV in full precision. Depends on: typer."""
 
 import csv
+import errno
+import io
+import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
@@ -8,6 +11,7 @@ from typing import Annotated, Any, NamedTuple
 import typer
 
 from tethership.errors import ConfigError
+from tethership.results.files import check_writable, write_atomically
 
 CsvOption = Annotated[
     Path | None, typer.Option("--csv", metavar="FILE", help="Also write the table as CSV, every digit of it.")
@@ -50,7 +54,10 @@ def print_table(rows: Sequence[Row], title: str) -> None:
 
 
 def writable_csv(path: Path | None) -> Path | None:
-    """Return the path if a CSV file can be written there; raises ConfigError before any work if not."""
+    """Return the path if a CSV file can be written there; raises ConfigError before any work if not.
+
+    Nothing is made yet, and a file that is there is not touched.
+    """
     if path is None:
         return None
     if path.is_dir():
@@ -58,8 +65,9 @@ def writable_csv(path: Path | None) -> Path | None:
     if path.suffix.lower() not in (".csv", ".txt"):
         raise ConfigError(f"--csv {path}: a table goes into a file that ends in .csv; name one, nothing is overwritten")
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.open("a").close()
+        check_writable(path.parent)
+        if path.exists() and not os.access(path, os.W_OK):
+            raise PermissionError(errno.EACCES, "it is there and may not be changed")
     except OSError as error:
         raise ConfigError(f"cannot write --csv {path}: {error.strerror or error}; name another file") from error
     return path
@@ -80,11 +88,8 @@ def write_csv(path: Path | None, heads: Sequence[str], rows: Iterable[Sequence[A
     """
     if path is None:
         return []
-    try:
-        with path.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow(heads)
-            writer.writerows(rows)
-    except OSError as error:
-        raise ConfigError(f"cannot write --csv {path}: {error.strerror or error}; name another file") from error
-    return [str(path)]
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    writer.writerow(heads)
+    writer.writerows(rows)
+    return [str(write_atomically(path, text.getvalue(), "name another file with --csv"))]

@@ -20,6 +20,7 @@ from tethership.cli.common import (
 from tethership.cli.points import warn
 from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
 from tethership.errors import ConfigError, SolveError
+from tethership.results.files import write_atomically
 from tethership.results.limits import ratios_passed
 from tethership.results.schema import GROUND, REGIMES
 from tethership.scenario import Scenario
@@ -84,7 +85,7 @@ def tension(
             "can be computed; check --end, --anchor and --length"
         )
     if folder is not None:
-        (folder / "tension.json").write_text(json_text(result), encoding="utf-8")
+        write_atomically(folder / "tension.json", json_text(result))
     rows = _rows(result)
     write_rows(csv, rows)
     if json:

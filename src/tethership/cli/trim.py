@@ -21,6 +21,7 @@ from tethership.cli.common import (
 )
 from tethership.cli.points import clearance_rows, point_keys, warn
 from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
+from tethership.results.files import write_atomically
 from tethership.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -75,7 +76,7 @@ def trim(
         "formulation": loaded.formulation,
     }
     if folder is not None:
-        (folder / "trim.json").write_text(json_text(result), encoding="utf-8")
+        write_atomically(folder / "trim.json", json_text(result))
     rows = _rows(loaded, point, state)
     write_rows(csv, rows)
     if json:

@@ -19,6 +19,7 @@ from tethership.cli.common import (
 from tethership.cli.progress import progress_bar
 from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
 from tethership.errors import ConfigError
+from tethership.results.files import write_together
 
 EXAMPLE = "Example: tethership tune docking_paper --wind 12 --out tuned"
 
@@ -84,9 +85,7 @@ def _written(document: dict[str, Any], name: str, changes: list[str] | None, out
     from tethership.fitting.scenario_file import retuned_text
     from tethership.scenario.load import packaged_text
 
-    path = out / "tuning.json"
-    path.write_text(json_module.dumps(document, indent=1), encoding="utf-8")
-    files = [str(path)]
+    files = {out / "tuning.json": json_module.dumps(document, indent=1)}
     if not name.endswith(".toml") and not changes:
         text = retuned_text(
             packaged_text("scenarios", name),
@@ -99,11 +98,8 @@ def _written(document: dict[str, Any], name: str, changes: list[str] | None, out
             },
             f"tuned, tethership tune, {document['wind']:g} m/s",
         )
-        stem = name.removesuffix("_paper")
-        retuned = out / f"{stem}_retuned.toml"
-        retuned.write_text(text, encoding="utf-8")
-        files.append(str(retuned))
-    return files
+        files[out / f"{name.removesuffix('_paper')}_retuned.toml"] = text
+    return [str(path) for path in write_together(files)]
 
 
 EFFECTS = {

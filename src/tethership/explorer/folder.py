@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from tethership.errors import ConfigError
+from tethership.results.files import write_atomically
 from tethership.scenario import Scenario, list_packaged, load_scenario
 from tethership.scenario.load import read_document
 
@@ -93,15 +94,7 @@ class Folder:
         ConfigError
             The name leads elsewhere, exists, or cannot be written.
         """
-        path = self.path(name)
-        try:
-            with path.open("x", encoding="utf-8") as file:
-                file.write(text)
-        except FileExistsError:
-            raise ConfigError(f"{name} exists already; nothing is overwritten: choose another name") from None
-        except OSError as error:
-            raise ConfigError(f"cannot write {path}: {error.strerror or error}") from error
-        return path
+        return write_atomically(self.path(name), text, "make room, or choose another --folder", new=True)
 
     def _check_inside(self, path: Path) -> None:
         """Raise ConfigError where a scenario file names files outside the folder."""

@@ -1,18 +1,21 @@
 """A fit as a file: everything found, as JSON. Depends on: fitting."""
 
 import json
+import warnings
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from tethership._version import __version__
-from tethership.errors import ConfigError
+from tethership.errors import ConfigError, TethershipWarning
 from tethership.fitting.identify import Budget, Identification, at_bounds
 from tethership.fitting.search import NEARLY
 from tethership.fitting.space import UNKNOWNS
 from tethership.fitting.spectrum import PARTS, unmet
+from tethership.results.seal import CHECKSUM, is_whole, sealed
 
 FORMULATIONS = ("published", "consistent")
 """Formulations that are fitted."""
@@ -90,19 +93,59 @@ def read_fit(path: Path) -> dict[str, Any]:
     Raises
     ------
     ConfigError
-        It cannot be read or is no fit.
+        It cannot be read, is no fit, or is not as it was written.
+
+    Warns
+    -----
+    TethershipWarning
+        It was written by version 0.1 and carries no checksum.
     """
     try:
         document = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise ConfigError(f"cannot read the fit {path}: {error}") from error
-    if not isinstance(document, dict) or "members" not in document:
-        raise ConfigError(f"{path} is no fit; give a file that `tethership identify` wrote")
-    return document
+    try:
+        _Fit.model_validate(document)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(map(str, first["loc"])) or "the file"
+        raise ConfigError(
+            f"{path} is no fit: {where}: {first['msg']}; give a file that `tethership identify` wrote"
+        ) from error
+    whole = is_whole(document)
+    if whole is None:
+        warnings.warn(f"{path}: written by tethership 0.1, without a checksum", TethershipWarning, stacklevel=2)
+    elif not whole:
+        raise ConfigError(f"{path} is damaged or was changed; take a whole copy, or make the fit again")
+    return {key: value for key, value in document.items() if key != CHECKSUM}
+
+
+_Number = Annotated[float, Field(allow_inf_nan=False)]
+
+
+class _Fit(BaseModel):
+    """What every fit must have; the rest of it is told, not computed with."""
+
+    model_config = ConfigDict(strict=True)
+
+    formulation: Literal["published", "consistent"]
+    misfit: _Number
+    parameters: Annotated[dict[str, _Number], Field(min_length=1)]
+    units: dict[str, str]
+    bounds: dict[str, Annotated[list[_Number], Field(min_length=2, max_length=2)]]
+    members: list[list[_Number]]
+
+    @model_validator(mode="after")
+    def _same_width(self) -> "_Fit":
+        names = set(self.parameters)
+        if set(self.units) != names or set(self.bounds) != names or any(len(m) != len(names) for m in self.members):
+            raise ValueError("units, bounds and members are not of the same parameters")
+        return self
 
 
 def fit_text(document: dict[str, Any]) -> str:
-    """Return a fit as the text of its file: one key a line, one member a line."""
+    """Return a fit as the text of its file: one key a line, one member a line, with its checksum."""
+    document = sealed(document)
     members = document["members"]
     head = {key: value for key, value in document.items() if key != "members"}
     lines = [f"  {json.dumps(key)}: {json.dumps(value)}," for key, value in head.items()]

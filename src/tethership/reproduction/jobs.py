@@ -18,6 +18,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tethership.campaign.execute import fresh_processes
+from tethership.results.files import write_atomically
+from tethership.results.seal import is_whole, sealed
 
 WORKERS = 2
 """Processes at most."""
@@ -137,22 +139,20 @@ def belongs(folder: Path, name: str, settings: Settings) -> bool:
 
 
 def _stands(folder: Path, name: str, key: str, of: str = "key") -> bool:
-    """Return whether a stored result has this key and its files are there."""
+    """Return whether a stored result is whole, has this key and its files are there."""
     try:
         stored = json.loads(part_file(folder, name).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return False
-    if not isinstance(stored, dict) or stored.get(of) != key:
+    if not isinstance(stored, dict) or stored.get(of) != key or not is_whole(stored):
         return False
     return all((folder / file).exists() for file in stored["result"].get("files", []))
 
 
 def _keep(folder: Path, name: str, key: str, study: str, result: dict[str, Any]) -> None:
-    """Write a result; a file half written is never taken for one."""
-    path = part_file(folder, name)
-    partial = path.with_suffix(".partial")
-    partial.write_text(json.dumps({"key": key, "study": study, "result": plain(result)}), encoding="utf-8")
-    partial.replace(path)
+    """Write a result; a file half written or changed since is never taken for one."""
+    text = json.dumps(sealed({"key": key, "study": study, "result": plain(result)}))
+    write_atomically(part_file(folder, name), text)
 
 
 def _ordered(jobs: Mapping[str, Job]) -> list[str]:

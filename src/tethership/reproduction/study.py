@@ -75,7 +75,6 @@ def load_flights(folder: Path, grounded: bool = False) -> dict[FlightKey, Flight
 
 def fly_part(folder: Path, settings: Settings) -> dict[str, Any]:
     """Fly the nine flights of Tables 3–5, and again with ground effect."""
-    (folder / "flights").mkdir(parents=True, exist_ok=True)
     files, trims = [], {}
     for wind in WINDS:
         for coefficient in (0.0, GROUND_EFFECT):

@@ -14,8 +14,30 @@ ANGLES = ("roll", "pitch", "yaw")
 REGIMES = ("slack", "joint", "taut")
 """Meanings of the values of `regime`."""
 
-FORMAT = 1
-"""Version of the layout of flight files; a file of another layout is refused."""
+FORMAT = 2
+"""Version of the layout of netCDF files; a file of a later layout is refused."""
+
+UNSEALED = 1
+"""Layout of tethership 0.1: the same without checksums; it is read with a warning."""
+
+HEAD = ("kind", "format", "tethership_version")
+"""Attributes of every netCDF file of this package."""
+
+ATTRIBUTES: dict[str, str] = {
+    "outcome": "why the flight ended",
+    "steps": "steps of the integrator",
+    "layers": "layers of control that acted",
+    "own_laws": "names of laws of one's own",
+    "sas": "whether SAS/attitude acted",
+    "formulation": "consistent or published",
+    "limits": "tensions that are watched [N]: control threshold, envelope's tear and tensile force, weakest cable",
+    "scenario_name": "packaged name or file",
+    "scenario": "the scenario as read, vehicle and changes included",
+    "solver": "settings of the integrator",
+    "trim": "trimmed state, throttles and deflections",
+    "versions": "of this package and those it computes with",
+}
+"""Attributes of a flight, each as JSON: its whole input, and how it ended."""
 
 
 class Variable(NamedTuple):
@@ -38,6 +60,32 @@ class Variable(NamedTuple):
     meaning: str
     frame: str = ""
 
+
+class Kind(NamedTuple):
+    """A kind of netCDF file.
+
+    Attributes
+    ----------
+    name : str
+        What such a file says it is.
+    attributes : tuple of str
+        Its own attributes besides `HEAD`.
+    verb : str
+        What one does to have such a file again.
+    """
+
+    name: str
+    attributes: tuple[str, ...]
+    verb: str = "make"
+
+    @property
+    def own(self) -> tuple[str, ...]:
+        """All attributes that are this package's, and have a checksum."""
+        return (*HEAD, *self.attributes)
+
+
+FLIGHT = Kind("tethership flight", tuple(ATTRIBUTES), "fly")
+LINEAR_MODEL = Kind("tethership linear model", ("attributes",))
 
 VARIABLES: dict[str, Variable] = {
     "velocity": Variable("m/s", ("body_axis",), "ground velocity of P", "body"),

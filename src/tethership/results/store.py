@@ -1,9 +1,6 @@
-"""Labelled outputs: arrays to an xarray dataset, to netCDF and back. Depends on: results.schema, errors."""
+"""Labelled outputs of a flight: arrays to an xarray dataset and back. Depends on: results.schema, errors."""
 
 import json
-import os
-import tempfile
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,10 +8,7 @@ import xarray as xr
 
 from tethership._version import __version__
 from tethership.errors import ConfigError
-from tethership.results.schema import ANGLES, BODY, FORMAT, GROUND, REGIMES, VARIABLES
-
-KIND = "tethership flight"
-"""What a flight file says it is."""
+from tethership.results.schema import ANGLES, ATTRIBUTES, BODY, FLIGHT, FORMAT, GROUND, REGIMES, VARIABLES
 
 
 def to_dataset(arrays: dict[str, np.ndarray], names: dict[str, list[str]], attributes: dict[str, Any]) -> xr.Dataset:
@@ -27,13 +21,15 @@ def to_dataset(arrays: dict[str, np.ndarray], names: dict[str, list[str]], attri
     names : dict
         Labels of the dimensions `thruster`, `fin`, `load`, `cable`.
     attributes : dict
-        Input, versions and outcome; anything that JSON holds.
+        Input, versions and outcome by the names of the schema; anything that JSON holds.
 
     Raises
     ------
     KeyError
-        An array is not in the schema.
+        An array or an attribute is not in the schema.
     """
+    if unknown := set(attributes) - set(ATTRIBUTES):
+        raise KeyError(f"results.schema.ATTRIBUTES has no {', '.join(sorted(unknown))}")
     labels = {"body_axis": BODY, "ground_axis": GROUND, "angle": ANGLES, **names}
     variables = {}
     for name, array in arrays.items():
@@ -50,67 +46,59 @@ def to_dataset(arrays: dict[str, np.ndarray], names: dict[str, list[str]], attri
     used = {dim for name in arrays if name != "time" for dim in VARIABLES[name].dims}
     coordinates |= {key: (key, list(value)) for key, value in labels.items() if key in used and len(value)}
     written = {key: json.dumps(value, sort_keys=True) for key, value in attributes.items()}
-    header = {"kind": KIND, "format": FORMAT, "tethership_version": __version__}
+    header = {"kind": FLIGHT.name, "format": FORMAT, "tethership_version": __version__}
     return xr.Dataset(variables, coordinates, {**header, **written})
 
 
 def attributes_of(dataset: xr.Dataset) -> dict[str, Any]:
-    """Return the attributes of a flight's dataset, decoded."""
-    header = ("kind", "format", "tethership_version")
-    return {str(k): json.loads(v) for k, v in dataset.attrs.items() if k not in header}
-
-
-def write(dataset: xr.Dataset, path: Path) -> None:
-    """Write a dataset to netCDF; the file appears whole or not at all.
-
-    Notes
-    -----
-    HDF5 writes into memory: where it meets a full disk itself it ends the process.
+    """Return the attributes of a flight's dataset, decoded; those that others added are left alone.
 
     Raises
     ------
     ConfigError
-        The place cannot be written.
+        One of them is no JSON.
     """
-    packed = {name: {"zlib": True, "complevel": 1} for name in dataset.data_vars if dataset[name].size > 1000}
-    handle = None
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        content = dataset.to_netcdf(engine="h5netcdf", encoding=packed)
-        handle = tempfile.NamedTemporaryFile(dir=path.parent, suffix=".part", delete=False)  # noqa: SIM115
-        with handle:
-            handle.write(content)
-        os.chmod(handle.name, 0o644)
-        os.replace(handle.name, path)
-    except OSError as error:
-        if handle is not None:
-            Path(handle.name).unlink(missing_ok=True)
-        raise ConfigError(
-            f"cannot write {path}: {error.strerror or error}; choose another folder with --out"
-        ) from error
+    found = {}
+    for name in ATTRIBUTES:
+        if name in dataset.attrs:
+            try:
+                found[name] = json.loads(str(dataset.attrs[name]))
+            except (ValueError, RecursionError) as error:
+                raise ConfigError(f"the flight's attribute {name} is not readable: {error}") from error
+    return found
 
 
-def read(path: Path, kind: str = KIND, layout: int = FORMAT) -> xr.Dataset:
-    """Return the dataset of a file of this package: a flight, or another kind that is asked for.
+def check_flight(dataset: xr.Dataset, origin: str) -> None:
+    """Check that a file's dataset is a flight: every output with its unit, dimensions and finite numbers, in time.
 
     Raises
     ------
     ConfigError
-        There is no such file, it is of another kind, or it has the layout of another version.
+        It is not.
     """
-    if not path.is_file():
-        raise ConfigError(f"cannot read {path}: no such file")
-    try:
-        with xr.open_dataset(path, engine="h5netcdf") as opened:
-            dataset = opened.load()
-    except Exception as error:
-        raise ConfigError(f"{path} is not a readable netCDF file (truncated, or another kind of file)") from error
-    if dataset.attrs.get("kind") != kind:
-        raise ConfigError(f"{path} is a netCDF file but no {kind.removeprefix('tethership ')} of tethership")
-    if int(dataset.attrs.get("format", -1)) != layout:
-        raise ConfigError(
-            f"{path} has layout {dataset.attrs.get('format')} of tethership "
-            f"{dataset.attrs.get('tethership_version')}; this version ({__version__}) reads layout {layout}: "
-            f"{'fly' if kind == KIND else 'make'} it again with the version that wrote it"
-        )
-    return dataset
+    if "time" not in dataset.variables:
+        raise ConfigError(f"{origin} is no whole flight: time is missing")
+    expected = {name: (entry.unit, ("time", *entry.dims)) for name, entry in VARIABLES.items()}
+    for name, (unit, dims) in {"time": ("s", ("time",)), **expected}.items():
+        problem = _problem(dataset, name, unit, dims)
+        if problem is not None:
+            raise ConfigError(f"{origin} is no whole flight: {name} {problem}; take a whole copy, or fly it again")
+    if np.any(np.diff(dataset["time"].values) < 0):
+        raise ConfigError(f"{origin} is no whole flight: its time runs backwards; take a whole copy, or fly it again")
+
+
+def _problem(dataset: xr.Dataset, name: str, unit: str, dims: tuple[str, ...]) -> str | None:
+    """Return what is wrong with an output, None where nothing is."""
+    if name not in dataset.variables:
+        return "is missing"
+    variable = dataset.variables[name]
+    sizes = {"body_axis": len(BODY), "ground_axis": len(GROUND), "angle": len(ANGLES)}
+    if variable.dims != dims or variable.dtype.kind != "f":
+        return f"has dimensions {', '.join(map(str, variable.dims))} of {variable.dtype}, not numbers over {dims}"
+    if any(variable.sizes[dim] != size for dim, size in sizes.items() if dim in dims):
+        return "has not three components"
+    if variable.attrs.get("units") != unit:
+        return f"is in {variable.attrs.get('units')!r}, not in {unit!r}"
+    if name != "cable_curve" and not np.isfinite(variable.values).all():  # a slack curve may have no points
+        return "has numbers that are not finite"
+    return None

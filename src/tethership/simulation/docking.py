@@ -21,6 +21,7 @@ from tethership.scenario.load import from_document
 from tethership.simulation.closed_loop import ClosedLoop
 from tethership.simulation.events import StopConditions
 from tethership.simulation.flight import Flight, Progress, fly
+from tethership.simulation.header import stored_solver
 from tethership.simulation.outcome import Outcome
 from tethership.spatial import rotation_matrix
 from tethership.system import Command, State, TetheredAirship
@@ -256,8 +257,11 @@ def fly_again(path: str | Path, progress: Progress | None = None) -> tuple[Scena
         raise ConfigError(
             f"{path} was flown with a law of one's own, which no file holds: {', '.join(stored['own_laws'])}"
         )
-    config = SolverConfig.model_construct(**stored["solver"])  # as it was validated when it was flown
-    start = _StoredStart(stored["trim"])
+    config = stored_solver(stored["solver"], str(path))
+    vehicle, trim = scenario.config.vehicle, stored["trim"]
+    if (len(trim["throttle"]), len(trim["deflection"])) != (len(vehicle.thrusters), len(vehicle.fins)):
+        raise ConfigError(f"{path}: its trim has not as many throttles and deflections as the ship; fly it again")
+    start = _StoredStart(trim)
     return scenario, dock(scenario, start, stored["layers"], stored["sas"], config, progress)
 
 

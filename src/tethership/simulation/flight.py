@@ -12,14 +12,17 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Array, Float
 
-from tethership.results import docking_metrics, store
+from tethership.results import docking_metrics, netcdf, store
 from tethership.results.columns import to_frame
+from tethership.results.schema import FLIGHT, VARIABLES
+from tethership.results.seal import run_id
 from tethership.scenario import ScenarioConfig
 from tethership.scenario.load import validated
 from tethership.scenario.solver import SolverConfig
 from tethership.simulation import trust
 from tethership.simulation.closed_loop import ClosedLoop
 from tethership.simulation.events import MARGINS, StopConditions
+from tethership.simulation.header import check_header
 from tethership.simulation.integrate import SAMPLES, Segment, Stepping, fly_segment
 from tethership.simulation.interrupt import Interruption
 from tethership.simulation.outcome import Outcome
@@ -58,7 +61,7 @@ class Flight:
 
     @functools.cached_property
     def _metrics(self) -> dict[str, Any]:
-        arrays = {str(name): np.asarray(value) for name, value in self.data.data_vars.items()}
+        arrays = {name: self.data[name].to_numpy() for name in VARIABLES if name in self.data}
         arrays["time"] = self.data["time"].to_numpy()
         return docking_metrics(arrays, self.attributes["limits"])
 
@@ -105,15 +108,33 @@ class Flight:
         """
         return to_frame(self.data)
 
+    @functools.cached_property
+    def run(self) -> str:
+        """Id of this flight in its file, picture and replay: a digest of its input and numbers."""
+        return run_id(self.data, FLIGHT.own)
+
+    def content(self) -> bytes:
+        """Return the bytes of the flight's netCDF file."""
+        return netcdf.content(self.data, FLIGHT)
+
     def save(self, path: str | Path) -> None:
         """Write the flight to netCDF; raises ConfigError where it cannot be written."""
-        store.write(self.data, Path(path))
+        netcdf.write(self.data, Path(path), FLIGHT)
 
     @classmethod
     def load(cls, path: str | Path) -> "Flight":
-        """Return the flight of a netCDF file; raises ConfigError if it is none."""
-        data = store.read(Path(path))
-        return cls(data, Outcome[store.attributes_of(data)["outcome"]])
+        """Return the flight of a netCDF file.
+
+        Raises
+        ------
+        ConfigError
+            It is none, it is damaged, or its numbers were changed; what others added to the file is left alone.
+        """
+        data = netcdf.read(Path(path), FLIGHT)
+        store.check_flight(data, str(path))
+        attributes = store.attributes_of(data)
+        check_header(attributes, str(path))
+        return cls(data, Outcome[attributes["outcome"]])
 
 
 @dataclasses.dataclass(frozen=True)

@@ -1,6 +1,7 @@
 """A campaign's tables as CSV: probabilities, and every flight. Depends on: campaign (its data)."""
 
 import csv
+import io
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,9 @@ import xarray as xr
 
 from tethership.campaign.answers import failed, outcomes
 from tethership.campaign.plan import Plan
+from tethership.campaign.store import CURE
 from tethership.campaign.work import COMPARED
+from tethership.results.files import write_atomically
 
 KEPT = (*COMPARED, "quasi_static_outside", "snap_impulse")
 """Metrics of every flight."""
@@ -69,8 +72,8 @@ def _flights(plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray]) -> Iter
 
 def _written(path: Path, head: list[str], rows: Iterable[list[Any]]) -> Path:
     """Write a table as CSV; returns where."""
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(head)
-        writer.writerows(rows)
-    return path
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    writer.writerow(head)
+    writer.writerows(rows)
+    return write_atomically(path, text.getvalue(), CURE)

@@ -12,11 +12,13 @@ from matplotlib.figure import Figure as Drawing
 from tethership.campaign import Campaign
 from tethership.campaign.answers import exceeded
 from tethership.campaign.plan import Plan
-from tethership.errors import ConfigError
+from tethership.campaign.store import CURE
+from tethership.results.files import write_atomically
 from tethership.view import campaign_figures as figures
 from tethership.view.campaign_csv import write_exceedance, write_flights
 from tethership.view.campaign_plot import plot_campaign
 from tethership.view.campaign_setting import TRUST, compliance_section, flown_section, interval
+from tethership.view.picture import png
 from tethership.view.report import Figure, Section, Table, write_report
 from tethership.view.study_tables import NAMES
 from tethership.view.words import percent, percents, trust
@@ -45,20 +47,6 @@ def write_campaign(
     ConfigError
         They cannot be written.
     """
-    try:
-        return _written(folder, plan, data, answers, footer)
-    except OSError as error:
-        raise ConfigError(
-            f"cannot write the report into {folder}: {error.strerror or error}. Every flight is kept: make room and "
-            "run the same command again"
-        ) from error
-
-
-def _written(
-    folder: Path, plan: Plan, data: xr.Dataset, answers: dict[str, Any], footer: Mapping[str, Any]
-) -> list[Path]:
-    """Return `write_campaign`'s files."""
-    (folder / "figures").mkdir(exist_ok=True)
     flags = exceeded(plan, data)
     sections = [
         flown_section(plan),
@@ -317,5 +305,5 @@ def _figure(folder: Path, name: str, drawn: Axes | Drawing, caption: str) -> Fig
     path = folder / "figures" / f"{name}.png"
     drawing = drawn if isinstance(drawn, Drawing) else drawn.get_figure(root=True)
     assert drawing is not None, "axes of a new figure have one"
-    drawing.savefig(path, dpi=140)
+    write_atomically(path, png(drawing, 140), CURE)
     return Figure(caption, path, None, caption)

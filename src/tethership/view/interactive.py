@@ -12,10 +12,10 @@ from plotly.subplots import make_subplots
 
 from tethership.analysis.spectrum import Complex
 from tethership.analysis.sweep import Sweep
-from tethership.errors import ConfigError
 from tethership.reproduction import LinearFigure, Panel
 from tethership.view import style
 from tethership.view.mode_names import mode_names
+from tethership.view.page_file import write_page_text
 from tethership.view.root_locus import PANELS, SLOWEST, colour_parameter, display, own_point
 
 SPACING = 0.2
@@ -54,12 +54,12 @@ def interactive_linear_figure(figure: LinearFigure) -> go.Figure:
 
 def write_page(figure: go.Figure, path: Path) -> None:
     """Write a page that works from disk without a network; raises ConfigError where that cannot be."""
-    try:
-        figure.write_html(path, include_plotlyjs=True, full_html=True)
-    except OSError as error:
-        raise ConfigError(
-            f"cannot write {path}: {error.strerror or error}; choose another folder with --out"
-        ) from error
+    write_page_text(path, page(figure))
+
+
+def page(figure: go.Figure) -> str:
+    """Return a page that works from disk without a network."""
+    return figure.to_html(include_plotlyjs=True, full_html=True)
 
 
 def _assembled(panels: list[Panel], title: str) -> go.Figure:

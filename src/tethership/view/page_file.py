@@ -1,9 +1,9 @@
-"""Pages on disk: what every page shares, its colours and how it is written. Depends on: errors."""
+"""Pages on disk: what every page shares, its colours and how it is written. Depends on: results."""
 
 from importlib import resources
 from pathlib import Path
 
-from tethership.errors import ConfigError
+from tethership.results.files import write_atomically
 
 
 def page_text(folder: str, name: str) -> str:
@@ -19,12 +19,4 @@ def write_page_text(path: str | Path, page: str) -> Path:
     ConfigError
         It cannot be written.
     """
-    path = Path(path)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(page, encoding="utf-8")
-    except OSError as error:
-        raise ConfigError(
-            f"cannot write {path}: {error.strerror or error}; choose another folder with --out"
-        ) from error
-    return path
+    return write_atomically(path, page)

@@ -8,12 +8,14 @@ from typing import Any
 
 import matplotlib.figure
 import plotly.graph_objects as go
+from plotly.offline import get_plotlyjs
 
 from tethership.fitting.fit_file import stored_fit
 from tethership.fitting.targets import TABLES
 from tethership.reproduction import FIGURES, linear_figure
 from tethership.reproduction.jobs import Settings, load_part
 from tethership.reproduction.study import flight_file, vehicle_name
+from tethership.results.files import write_atomically, write_together
 from tethership.simulation import Flight
 from tethership.view.breakdown import plot_breakdown
 from tethership.view.comparison import plot_comparison
@@ -22,6 +24,7 @@ from tethership.view.fit_figures import plot_correlation, plot_marginals, plot_r
 from tethership.view.interactive import interactive_linear_figure
 from tethership.view.interactive_flight import interactive_flight, interactive_histories
 from tethership.view.line_figures import plot_line_comparison
+from tethership.view.picture import png
 
 DPI = 110
 """Of pictures."""
@@ -46,17 +49,18 @@ class _Pictures:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.files: list[str] = []
-        (folder / "figures").mkdir(parents=True, exist_ok=True)
 
     def png(self, name: str, drawn: matplotlib.figure.Figure) -> None:
         """Write a picture."""
-        drawn.savefig(self.folder / "figures" / f"{name}.png", dpi=DPI)
+        write_atomically(self.folder / "figures" / f"{name}.png", png(drawn, DPI))
         self.files.append(f"figures/{name}.png")
 
     def plot(self, name: str, drawn: go.Figure) -> None:
         """Write a plot to be explored: as a page of its own, and as data for the report."""
-        drawn.write_json(self.folder / "figures" / f"{name}.json")
-        drawn.write_html(self.folder / "figures" / f"{name}.html", include_plotlyjs="directory", full_html=True)
+        figures = self.folder / "figures"
+        page = drawn.to_html(include_plotlyjs="directory", full_html=True)
+        write_together({figures / f"{name}.html": page, figures / f"{name}.json": str(drawn.to_json())})
+        write_atomically(figures / "plotly.min.js", get_plotlyjs())  # what all pages of the folder share
         self.files += [f"figures/{name}.json", f"figures/{name}.html"]
 
     def result(self) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from typing import Any
 
 from tethership._version import __version__
 from tethership.errors import ConfigError
+from tethership.results.seal import RUN
 from tethership.simulation import Flight
 from tethership.view import style
 from tethership.view.page_file import page_text, write_page_text
@@ -80,9 +81,13 @@ def write_replay(flights: Flights, path: str | Path) -> Path:
     >>> ts.write_replay(flight, Path(tempfile.mkdtemp()) / "replay.html").name
     'replay.html'
     """
+    return write_page_text(path, replay_text(flights))
+
+
+def replay_text(flights: Flights) -> str:
+    """Return the page that `write_replay` writes; errors as there."""
     named = _named(flights)
-    page = replay_page([scene(flight, name) for name, flight in named])
-    return write_page_text(path, page)
+    return replay_page([scene(flight, name) for name, flight in named], [flight.run for _, flight in named])
 
 
 def _named(flights: Flights) -> list[tuple[str, Flight]]:
@@ -99,8 +104,8 @@ def _named(flights: Flights) -> list[tuple[str, Flight]]:
     return named
 
 
-def replay_page(scenes: list[dict[str, Any]]) -> str:
-    """Return the page of one or two scenes of `view.replay.scene`."""
+def replay_page(scenes: list[dict[str, Any]], runs: Sequence[str] = ()) -> str:
+    """Return the page of one or two scenes of `view.replay.scene`, with the ids of the runs they show."""
     data = {"flights": scenes, "colours": _colours(), "version": __version__}
     text = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
     own = "\n".join(_packaged(f"{name}.js") for name in SCRIPTS)
@@ -110,7 +115,8 @@ def replay_page(scenes: list[dict[str, Any]]) -> str:
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f'<meta name="generator" content="tethership {__version__}">\n<title>{title}: replay</title>\n'
+        f'<meta name="generator" content="tethership {__version__}">\n'
+        f'<meta name="tethership-{RUN}" content="{" ".join(runs)}">\n<title>{title}: replay</title>\n'
         f"<style>\n{_packaged('vendor/uplot.min.css')}\n{palette}{_packaged('replay.css')}</style>\n</head>\n"
         f"{_packaged('body.html')}"
         f"{_licensed('three')}{_licensed('uplot')}"
