@@ -143,6 +143,7 @@ def test_flight_shown_is_that_of_the_command(known, shell):
         ({"wind.speed": "-3"}, "wind.speed: it is -3 m/s; it must be at least 0"),
         ({"wind.speed": "9 kg"}, "'kg', which is no 'm/s'"),
         ({"wind.speed": "9,5"}, "'9,5' is no number"),
+        ({"wind.speed": "1 m/s*9**9**9"}, "is no unit"),
         ({"wind.speed": "nan"}, "not a finite number"),
         ({"wind.from_direction": "10 m"}, "which is no 'rad'; give deg or rad"),
         ({"cables.nose.length": "0"}, "it must be above 0"),

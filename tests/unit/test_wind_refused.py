@@ -77,7 +77,7 @@ def test_places_that_are_no_files_are_refused_before_they_are_opened(tmp_path):
     for name, said in (
         ("pipe.csv", "no regular file"),
         ("folder.nc", "no regular file"),
-        ("large.csv", "it has 300 MB, at most 32 MB are read"),
+        ("large.csv", "it has 300 MB; at most 32 MB are read"),
         ("missing.csv", "No such file"),
         ("nul\0.csv", "null"),
         ("x" * 300 + ".csv", "too long"),

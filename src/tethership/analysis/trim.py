@@ -101,7 +101,7 @@ def trim(
     ('converged', 14.17)
     """
     _, point = solved(scenario, ask(scenario, unknowns, fixed))
-    if throw and point.outcome is TrimOutcome.no_equilibrium:
+    if throw and not point.outcome.is_start:
         raise SolveError(f"{point.message} Residual: {np.asarray(point.residual)} N, N m")
     return point
 

@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 
-from tethership.analysis import TrimOutcome, trim
+from tethership.analysis import trim
 from tethership.campaign.flights import Flyer
 from tethership.campaign.plan import Batch, Work
 from tethership.errors import ConfigError
@@ -82,6 +82,6 @@ def fly_one(scenario: Scenario, names: tuple[str, ...], values: np.ndarray, solv
     """
     here = scenario_at(scenario, dict(zip(names, map(float, values), strict=True)))
     point = trim(here)
-    if point.outcome is TrimOutcome.no_equilibrium:
-        raise ConfigError(f"{scenario.name}: no equilibrium for this case")
+    if not point.outcome.is_start:
+        raise ConfigError(f"{scenario.name}: this case cannot begin. {point.message}")
     return dock(here, point, LAYERS, solver=solver)

@@ -118,3 +118,6 @@ VARIABLES: dict[str, Variable] = {
     "clearance": Variable("m", (), "height of the hull's lowest point above ground"),
 }
 """All outputs by name; every one has `time` [s] as its first dimension."""
+
+SINCE_LAYOUT_2 = ("deflection_saturated",)
+"""Outputs that files of layout 1 lack."""

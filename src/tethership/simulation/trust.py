@@ -80,7 +80,7 @@ def reservations(flight: Flown) -> list[str]:
     clearance = flight.data["clearance"].to_numpy()
     if flight.config.has_ground() and clearance.min(initial=0.0) < -DIP:
         below = seconds_above(time, -clearance, 0.0)
-        found.append(f"the hull was below the ground for {below:.1f} s, by up to {-clearance.min():.2f} m")
+        found.append(f"the hull was below the ground for {below:.1f} s (by up to {-clearance.min():.2f} m)")
     saturated = flight.metrics["saturated_seconds"]
     if len(time) and saturated > SATURATED * time[-1]:
         found.append(f"commands were saturated for {saturated:.1f} s of {time[-1]:.1f} s")

@@ -13,6 +13,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from tethership.errors import ConfigError
+from tethership.results.limits import HARMFUL
 from tethership.simulation import Flight
 from tethership.view import style
 from tethership.view.ground_box import GroundBox, box_around, draw_box
@@ -209,9 +210,11 @@ def _draw_cable(axes: Axes, snapshots: Snapshots, cable: int, view: View) -> Non
 
 def _caption(axes: Axes, name: str, snapshots: Snapshots) -> None:
     """Write above a view what it is and how it ended."""
-    words = f"{snapshots.flight.outcome.name.replace('_', ' ')} after {snapshots.time[-1]:.1f} s"
+    flight = snapshots.flight
+    words = f"{flight.outcome.name.replace('_', ' ')} after {snapshots.time[-1]:.1f} s"
     if snapshots.cables:
-        words += f"  ·  largest tension {snapshots.flight.metrics['tension_max']:.0f} N"
+        words += f"  ·  largest tension {flight.metrics['tension_max']:.0f} N"
+    passed = [name.removeprefix("envelope_").replace("_", " ") for name in HARMFUL if name in flight.limits_passed]
     where = {
         "xycoords": "axes fraction",
         "textcoords": "offset points",
@@ -220,6 +223,9 @@ def _caption(axes: Axes, name: str, snapshots: Snapshots) -> None:
     }
     axes.annotate(name, xytext=(0, 15), fontsize=style.FONT + 1, weight="bold", **where)
     axes.annotate(words, xytext=(0, 3), fontsize=style.FONT, **where)
+    if passed:
+        limits = f"beyond limits: {', '.join(passed)}"
+        axes.annotate(limits, xytext=(0, -4), fontsize=style.FONT, va="top", zorder=8, **where)
 
 
 def _head(figure: Figure, title: str, snapshots: Snapshots) -> None:

@@ -1,5 +1,7 @@
 """The docking figure: a flight from three sides and its time histories. Depends on: matplotlib, view."""
 
+import textwrap
+
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -19,6 +21,9 @@ SIZE = (10.8, 8.6)
 
 LEFT = 0.075
 """Left margin, over the figure's width [-]."""
+
+VERDICT_ROOM = 132
+"""Letters of a line of the verdict."""
 
 LEGEND_ROOM = 34
 """Letters of cables' names, two more each for the line, that the legend's row holds beside the rest."""
@@ -68,7 +73,7 @@ def plot_docking(flight: Flight, figure: Figure | None = None, title: str | None
 
 def _layout(figure: Figure) -> tuple[Axes, Axes, Axes, tuple[Axes, Axes, Axes]]:
     """Return the axes of the views from north, east and top, and of the histories."""
-    left, right, low, high, gap = LEFT, 0.985, 0.06, 0.865, 0.075
+    left, right, low, high, gap = LEFT, 0.985, 0.06, 0.848, 0.075
     middle = 0.5 * (low + high)
     upper = figure.add_gridspec(1, 2, left=left, right=right, bottom=middle + 0.5 * gap, top=high, wspace=0.16)
     lower = figure.add_gridspec(1, 2, left=left, right=right, bottom=low, top=middle - 0.5 * gap, wspace=0.16)
@@ -86,14 +91,13 @@ def _layout(figure: Figure) -> tuple[Axes, Axes, Axes, tuple[Axes, Axes, Axes]]:
 
 def _title(figure: Figure, snapshots: Snapshots, title: str | None) -> None:
     """Write the title, the scenario's if none is given, and, below it, how it was flown and how it ended."""
-    attributes, config = snapshots.flight.attributes, snapshots.config
-    parts = [
-        *flown_words(config, attributes),
-        snapshots.flight.verdict,
-    ]
+    config, flight = snapshots.config, snapshots.flight
     words = config.title if title is None else title
-    figure.text(LEFT, 0.972, words, fontsize=style.FONT + 4, weight="bold", color=style.INK, va="center")
-    figure.text(LEFT, 0.944, "  ·  ".join(parts), fontsize=style.FONT, color=style.INK, va="center")
+    flown = "  ·  ".join(flown_words(config, flight.attributes))
+    ended = "\n".join(textwrap.wrap(f"{flight.verdict[0].upper()}{flight.verdict[1:]}.", VERDICT_ROOM))
+    figure.text(LEFT, 0.978, words, fontsize=style.FONT + 4, weight="bold", color=style.INK, va="center")
+    figure.text(LEFT, 0.954, flown, fontsize=style.FONT, color=style.INK, va="center")
+    figure.text(LEFT, 0.944, ended, fontsize=style.FONT, color=style.INK, va="top", linespacing=1.15)
 
 
 def _legend(figure: Figure, snapshots: Snapshots) -> None:
@@ -113,7 +117,7 @@ def _legend(figure: Figure, snapshots: Snapshots) -> None:
     figure.legend(
         handles=handles,
         loc="center left",
-        bbox_to_anchor=(LEFT - 0.005, 0.915),
+        bbox_to_anchor=(LEFT - 0.005, 0.893),
         ncols=len(handles),
         fontsize=style.FONT,
         frameon=False,

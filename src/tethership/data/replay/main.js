@@ -11,7 +11,7 @@ const describe = (flights) => {
 };
 
 const notesOf = (flight) => [
-  ...flight.warnings,
+  ...flight.warnings.map((warning) => warning.split(/[;:]/)[0]),
   ...(flight.missing.length ? [`not in this file: ${flight.missing.join(", ")}`] : []),
   ...(flight.ground_modelled
     ? []
@@ -30,6 +30,7 @@ const makeStageBoxes = (flights, same) =>
     caption.querySelector("span").textContent = own.join(" · ");
     const later = flights.slice(i + 1).flatMap(notesOf);
     const scale = i > 0 && limitsDiffer(flights) ? ["cables coloured by A’s limits, not B’s"] : [];
+    box.querySelector(".note").title = flight.warnings.join("\n");
     box.querySelector(".note").textContent = [...scale, ...notesOf(flight)]
       .filter((note) => !later.includes(note))
       .join(" · ");

@@ -1,12 +1,8 @@
 """One column of a measured wind's file, and how large a file may be. Depends on: errors."""
 
-import stat
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-
-from tethership.errors import ConfigError
 
 LARGEST_FILE = 32_000_000
 """Bytes that are read of a file."""
@@ -46,19 +42,3 @@ class Column(NamedTuple):
     unit: str = ""
     meaning: str = ""
     height: float | None = None
-
-
-def check_file(path: Path) -> None:
-    """Raise ConfigError unless a path is a regular file of a size that is read; nothing is opened."""
-    try:
-        found = path.stat()
-    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
-        reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
-        raise ConfigError(f"cannot read the wind of {str(path)!r}: {reason}") from error
-    if not stat.S_ISREG(found.st_mode):
-        raise ConfigError(f"cannot read the wind of {path}: it is no regular file")
-    if found.st_size > LARGEST_FILE:
-        raise ConfigError(
-            f"cannot read the wind of {path}: it has {found.st_size / 1e6:.0f} MB, at most {LARGEST_FILE / 1e6:.0f} MB "
-            "are read; cut out the time to be flown"
-        )

@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tethership.errors import ConfigError
-from tethership.scenario.wind_record.column import WANTED, Column, check_file
+from tethership.scenario.reading import check_file_to_read
+from tethership.scenario.wind_record.column import LARGEST_FILE, WANTED, Column
 from tethership.scenario.wind_record.heights import LEVEL, at_height
 from tethership.scenario.wind_record.names import measures, rank_of, role_of
 from tethership.scenario.wind_record.netcdf_file import read_netcdf
@@ -70,7 +71,7 @@ def read_record(path: Path, height: float | None = None) -> Record:
     ConfigError
         The file cannot be read, lacks a column, has a unit or number that is none, or a gap too long to be bridged.
     """
-    check_file(path)
+    check_file_to_read(path, LARGEST_FILE)
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise ConfigError(f"{path}: a measured wind is a .csv, .txt, .dat or .nc file with {WANTED}")
