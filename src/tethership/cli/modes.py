@@ -19,7 +19,7 @@ from tethership.cli.common import (
     stage,
     writable_folder,
 )
-from tethership.cli.points import balanced, point_keys, warn
+from tethership.cli.points import balanced, clearance_line, point_keys, warn
 from tethership.cli.tables import CsvOption, writable_csv, write_csv
 from tethership.errors import ConfigError, suggestion
 from tethership.results.files import write_together
@@ -86,7 +86,9 @@ def modes(
     if json:
         print_json(result)
     else:
-        _print(found, ranked, f"{loaded.config.title}: wind {loaded.config.wind.speed:g} m/s, {loaded.formulation}")
+        title = f"{loaded.config.title}: wind {loaded.config.wind.speed:g} m/s, {loaded.formulation}"
+        where = clearance_line(point.clearance_hull, point.clearance_cable)
+        _print(found, ranked, f"{title}\n{where}".rstrip())
         warn(point.warnings)
     if point.outcome is not TrimOutcome.converged:
         typer.echo(f"tethership: {point.message}", err=True)

@@ -32,6 +32,12 @@ def clearance_rows(hull: float | None, cable: float | None) -> list[Row]:
     return [Row(name, height, "m", ".2f") for name, height in parts if height is not None]
 
 
+def clearance_line(hull: float | None, cable: float | None, least: str = "") -> str:
+    """Return the same in one line, nothing where no ground is known; `least` says that they are the least of many."""
+    told = ", ".join(f"{row.name} {row.value:.2f} m" for row in clearance_rows(hull, cable))
+    return f"  {least}{told}" if told else ""
+
+
 def warn(lines: Iterable[str]) -> None:
     """Print warnings on standard error, a line each."""
     for line in lines:

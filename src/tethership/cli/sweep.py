@@ -24,7 +24,7 @@ from tethership.cli.common import (
     writable_folder,
 )
 from tethership.cli.completion import complete_parameter
-from tethership.cli.points import warn
+from tethership.cli.points import clearance_line, warn
 from tethership.cli.tables import CsvOption, writable_csv, write_csv
 from tethership.errors import ConfigError, shown
 from tethership.results.files import write_together
@@ -271,6 +271,12 @@ def _number(scenario: Scenario, name: str, text: str) -> float:
         raise ConfigError(f"--over {name}: {shown(text)} is no number for an end: {error}") from error
 
 
+def _least(heights: np.ndarray) -> float | None:
+    """Return the least of some heights [m], None where none is known."""
+    known = heights[np.isfinite(heights)]
+    return float(known.min()) if len(known) else None
+
+
 def _lacking(found: "Sweep", point: int) -> str:
     """Return by how much a point fails to be a trim."""
     match found.outcomes[point].name:
@@ -294,6 +300,9 @@ def _print(result: dict[str, Any], found: list["Sweep"]) -> None:
         first, last = ({name: float(v[i]) for name, v in one.values.items()} for i in (0, -1))
         words = ", ".join(f"{name} {first[name]:.4g} to {last[name]:.4g} {one.units[name]}" for name in one.values)
         typer.echo(f"{words}: {int(one.trimmed.sum())} of {len(one.outcomes)} points in trim")
+        where = clearance_line(_least(one.clearance_hull), _least(one.clearance_cable), "least ")
+        if where:
+            typer.echo(where)
         for point, value in enumerate(next(iter(one.values.values()))):
             if not one.trimmed[point]:
                 typer.echo(f"  {value:<10.4g} {one.outcomes[point].name}: {_lacking(one, point)}")

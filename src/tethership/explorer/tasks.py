@@ -87,6 +87,7 @@ def _trim(scenario: Scenario, options: Mapping[str, Any], report: Report) -> dic
 def _locus(scenario: Scenario, options: Mapping[str, Any], report: Report) -> dict[str, Any]:
     """Return the root locus along a parameter and the modes of the scenario itself."""
     from tethership.analysis import linearize, sweep, trim
+    from tethership.analysis.sweep_warnings import sweep_warnings
 
     name, points = options["name"], int(options["points"])
     low, high = (converted(value, unit, options["unit"]) for value, unit in (options["low"], options["high"]))
@@ -109,7 +110,8 @@ def _locus(scenario: Scenario, options: Mapping[str, Any], report: Report) -> di
         "message": "" if found.trimmed.all() else next(o.value for o in found.outcomes if o.name != "converged"),
         "figure": locus_figure(found, own),
         "modes": [] if own is None else [_mode(mode) for mode in own.modes],
-        "own": point.outcome.name,
+        "own": point.message,
+        "warnings": [*sweep_warnings(found), *point.warnings],
         "events": [
             {
                 "kind": event.kind,

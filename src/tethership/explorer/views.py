@@ -84,8 +84,8 @@ def locus_head(result: dict[str, Any]) -> Any:
         return verdict("bad", result["message"])
     whole = result["trimmed"] == result["points"]
     words = f"{result['trimmed']} of {result['points']} points in equilibrium. {result['message']}".strip()
-    notes = [] if result["own"] == "converged" else [f"The chosen scenario itself: {result['own'].replace('_', ' ')}."]
-    return verdict("good" if whole else "fair", words, notes)
+    notes = [f"The chosen scenario itself: {result['own']}", *map(_sentence, result["warnings"])]
+    return verdict("good" if whole and not result["warnings"] else "fair", words, notes)
 
 
 def locus_rest(result: dict[str, Any]) -> Any:
