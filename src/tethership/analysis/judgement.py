@@ -181,10 +181,7 @@ def _warnings(
     if outcome.is_start and config.has_ground():
         for cable, height in zip(config.cables, found.cables, strict=True):
             if height < -UNDER_GROUND:
-                yield (
-                    f"the cable {cable.name} dips {-float(height):.2f} m below the ground; its pull is that of a cable "
-                    "hanging free, for contact with the ground is not modelled"
-                )
+                yield (f"the cable {cable.name} dips {-float(height):.2f} m below the ground; contact is not modelled")
 
 
 def _cure(config: ScenarioConfig, needs: dict[str, str]) -> str:

@@ -76,6 +76,8 @@ def chosen_scenario(name: str, wind: float | None, formulation: str | None, chan
     """
     values = parsed_changes(changes)
     if wind is not None:
+        if "wind.speed" in values:
+            raise ConfigError("--wind and --set wind.speed both say what the wind is; give one of them")
         values["wind.speed"] = wind
     if formulation is not None:
         values["formulation"] = formulation

@@ -131,8 +131,8 @@ class _Line(NamedTuple):
             )
         if clearance < -1e-3:
             said.append(
-                f"the cable {name} hangs {-clearance:.2f} m below the ground, on which it would lie; contact with the "
-                "ground is not modelled, so its pull is that of a cable hanging free"
+                f"the cable {name} hangs {-clearance:.2f} m below the ground, on which it would lie; contact is not "
+                "modelled"
             )
         return said
 
@@ -221,8 +221,6 @@ def _elevation(direction: Any) -> float | None:
 
 def _sag(curve: np.ndarray) -> float:
     """Return the largest distance of a curve from its chord [m]."""
-    span = curve[-1] - curve[0]
-    length = np.linalg.norm(span)
-    along = span / length if length > 0 else span
-    offset = curve - curve[0]
-    return float(np.linalg.norm(offset - (offset @ along)[:, None] * along, axis=1).max())
+    span, offset = curve[-1] - curve[0], curve - curve[0]
+    share = np.clip(offset @ span / max(float(span @ span), 1e-300), 0.0, 1.0)
+    return float(np.linalg.norm(offset - share[:, None] * span, axis=1).max())

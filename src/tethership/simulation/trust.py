@@ -65,7 +65,7 @@ def seconds_passed(flight: Flown) -> dict[str, float]:
     strength = np.array([cable.breaking_force for cable in flight.config.cables])
     strained = (flight.data["tension_largest"].to_numpy() / strength).max(axis=1)
     passed["cable_break"] = seconds_above(flight.data["time"].to_numpy(), strained, 1.0)
-    broken = flight.outcome is Outcome.cable_broken or strained.max(initial=0.0) >= 1.0
+    broken = flight.outcome is Outcome.cable_broken or strained.max(initial=0.0) >= 1.0  # it ends there, after 0 s
     return {name: over for name, over in passed.items() if over > 0.0 or (name == "cable_break" and broken)}
 
 
@@ -74,7 +74,7 @@ def reservations(flight: Flown) -> list[str]:
     found = [
         f"{WORDS[name]} was passed for {over:.2f} s"
         for name, over in seconds_passed(flight).items()
-        if name in HARMFUL and flight.outcome is not Outcome.cable_broken
+        if name in HARMFUL and not (name == "cable_break" and flight.outcome is Outcome.cable_broken)
     ]
     time = flight.data["time"].to_numpy()
     clearance = flight.data["clearance"].to_numpy()
@@ -95,7 +95,8 @@ def verdict(flight: Flown) -> str:
     reserved = reservations(flight)
     if not reserved:
         return words
-    return f"{words}, but {', '.join(reserved[:-1])}{' and ' if reserved[:-1] else ''}{reserved[-1]}"
+    joined = f"{', '.join(reserved[:-1])}{' and ' if reserved[:-1] else ''}{reserved[-1]}"
+    return f"{words}{', but ' if flight.outcome is Outcome.docked else '; before that '}{joined}"
 
 
 def warnings(flight: Flown) -> list[str]:
@@ -106,7 +107,6 @@ def warnings(flight: Flown) -> list[str]:
         below = seconds_above(time, -dips.min(axis=1), 0.0)
         said.insert(
             0,
-            f"a cable dips below the ground for {below:.1f} s, by up to {-dips.min():.2f} m; its pull is that of a "
-            "cable hanging free, for contact with the ground is not modelled",
+            f"a cable dips below the ground for {below:.1f} s, by up to {-dips.min():.2f} m; contact is not modelled",
         )
     return [*getattr(flight.config.wind, "remarks", ()), *(line for line in said if line)]

@@ -22,7 +22,7 @@ SIZE = (10.8, 8.6)
 LEFT = 0.075
 """Left margin, over the figure's width [-]."""
 
-VERDICT_ROOM = 132
+VERDICT_ROOM = 150
 """Letters of a line of the verdict."""
 
 LEGEND_ROOM = 34
