@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import tethership as ts
-from tethership.results import store
+from tethership.results import netcdf
+from tethership.results.schema import LINEAR_MODEL
 from tethership.spatial import rotation_matrix
 from tethership.system import State
 from tethership.system.state import STATE_NAMES
@@ -166,11 +167,11 @@ def test_a_file_keeps_them(model, tmp_path):
 
 def test_a_file_of_version_0_1_is_read(model, tmp_path):
     new = ["C", "D", "output_value", "output", "output_unit", "input_is_control"]
-    store.write(model.to_dataset().drop_vars(new), tmp_path / "old.nc")
+    netcdf.write(model.to_dataset().drop_vars(new), tmp_path / "old.nc", LINEAR_MODEL)
     old = ts.LinearModel.load(tmp_path / "old.nc")
     assert old.controls == model.controls
     assert old.outputs == ()
     assert old.to_control().C.shape == (12, 12)
-    store.write(model.to_dataset().drop_vars("D"), tmp_path / "half.nc")
+    netcdf.write(model.to_dataset().drop_vars("D"), tmp_path / "half.nc", LINEAR_MODEL)
     with pytest.raises(ts.ConfigError, match=r"half\.nc is no whole linear model: D is missing"):
         ts.LinearModel.load(tmp_path / "half.nc")

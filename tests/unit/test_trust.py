@@ -264,7 +264,7 @@ def test_docked_but(torn):
     assert torn.outcome is ts.Outcome.docked
     assert torn.limits_passed["envelope_tear"] == pytest.approx(2.0, abs=0.1)
     assert "cable_break" not in torn.limits_passed
-    assert "docked after 64.57 s, but the envelope's tear limit was passed for 2.01 s" in torn.verdict
+    assert "docked after 64.6 s, but the envelope's tear limit was passed for 2.01 s" in torn.verdict
     assert "(by up to 1.99 m)" in torn.verdict
     assert "saturated for 48.7 s of 64.6 s" in torn.verdict
 

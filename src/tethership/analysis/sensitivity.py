@@ -31,7 +31,7 @@ from tethership.scenario.parameters import Parameter, list_parameters
 TABLES = ("vehicle.", "atmosphere.", "wind.", "ground.", "cables.", "trim.")
 """Parts of a scenario on which a trim and its linear model depend."""
 
-WITHOUT_EFFECT = (".breaking_force", ".rewind_rate", ".fastest_rate", ".largest_deflection")
+WITHOUT_EFFECT = (".breaking_force", ".rewind_rate", ".fastest_rate")
 
 CORNER = 0.02
 """Relative difference of the slopes to both sides beyond which there is a corner."""
@@ -134,7 +134,7 @@ def rank_sensitivities(
     """Return the tables of several modes; arguments and errors as in `sensitivities`."""
     found = trim(scenario) if point is None else point
     if found.outcome is TrimOutcome.no_equilibrium:
-        raise SolveError(f"{found.message} Without it there are no modes.")
+        raise SolveError(f"{found.outcome.value} Without it there are no modes.")
     model = linearize(scenario, found)
     named = find_modes(model)
     spectrum = analyse(model.comparable_matrix(), CLUSTER)

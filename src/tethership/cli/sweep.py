@@ -265,6 +265,8 @@ def _number(scenario: Scenario, name: str, text: str) -> float:
 
     parameter = find_parameter(list_parameters(scenario.config), name, scenario.name)
     with_unit = number_with_unit(text)
+    if text.strip().lower().lstrip("+-") in ("nan", "inf", "infinity"):
+        raise ConfigError(f"--over {name}: the end {text!r} is not a finite number")
     try:
         return converted(*with_unit, parameter.unit) if with_unit else converted(float(text), SI_UNIT, parameter.unit)
     except ValueError as error:

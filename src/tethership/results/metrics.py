@@ -99,6 +99,15 @@ def jumps(angle: Array) -> int:
     return int(np.sum(np.abs(np.diff(angle)) > 0.5 * np.pi))
 
 
+def saturated_seconds(flight: Any) -> float:
+    """Return for how long [s] a thruster or a fin was asked for more than it has; `flight` has the outputs by name."""
+    asked = [np.asarray(flight[name]) for name in ("saturated", "deflection_saturated") if name in flight]
+    time = np.asarray(flight["time"])
+    if not asked or not len(time):
+        return 0.0
+    return float(mean(time, np.concatenate(asked, axis=1).max(axis=1, initial=0.0)) * (time[-1] - time[0]))
+
+
 def docking_metrics(flight: dict[str, Array], limits: list[float]) -> dict[str, Any]:
     """Return the metrics of Tables 3–6 of one flight.
 
@@ -126,8 +135,6 @@ def docking_metrics(flight: dict[str, Array], limits: list[float]) -> dict[str, 
     rates = flight["rewind_rate"]
     chi = flight["misalignment"]
     sag = flight["cable_clearance"]
-    asked = [flight[name] for name in ("saturated", "deflection_saturated") if name in flight]
-    saturated = np.concatenate(asked, axis=1).max(axis=1, initial=0.0)
     return {
         "tension_max": float(fine_tension.max()),
         "tension_mean": mean(time, tension),
@@ -139,6 +146,6 @@ def docking_metrics(flight: dict[str, Array], limits: list[float]) -> dict[str, 
         "theta_rms": float(np.degrees(np.sqrt(mean(time, pitch**2)))),
         "clearance_min": float(flight["clearance"].min()),
         "cable_clearance_min": float(sag.min()) if cables else None,
-        "saturated_seconds": float(mean(time, saturated) * (time[-1] - time[0])),
+        "saturated_seconds": saturated_seconds(flight),
         "misalignment_jumps": jumps(chi[:, 0]) if cables else 0,
     }

@@ -6,7 +6,6 @@ Depends on: system, control. The integrator's vector is (12 states, cable length
 from typing import Any, NamedTuple
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Float
@@ -29,8 +28,10 @@ class Instant(NamedTuple):
     cables : tuple of CableState
     command : Command
         After clipping.
-    saturated : Command
-        Whether a thruster, or a fin, is asked for more than it has.
+    saturated : Float[Array, "thrusters"]
+        Whether a thruster is asked for more than it has.
+    fins_saturated : Float[Array, "fins"]
+        Whether a fin is asked for more than its limit.
     rewind_rate : Float[Array, "cables"]
         Ψ [m/s].
     loads : dict[str, Wrench]
@@ -43,7 +44,8 @@ class Instant(NamedTuple):
     lengths: Float[Array, "cables"]
     cables: tuple[CableState, ...]
     command: Command
-    saturated: Command
+    saturated: Float[Array, "thrusters"]
+    fins_saturated: Float[Array, "fins"]
     rewind_rate: Float[Array, "cables"]
     loads: dict[str, Wrench]
     memory_rate: Any
@@ -110,9 +112,18 @@ class ClosedLoop(eqx.Module):
         correction, memory_rate = self.law(time, measurement, self._memory(flat, measurement))
         asked = Command(self.trimmed.throttle + correction.throttle, self.trimmed.deflection + correction.deflection)
         command = self.plant.ship.allowed(asked)
-        saturated = jax.tree.map(jnp.not_equal, asked, command)
         loads = self.plant.wrenches(time, state, command, cables)
-        return Instant(state, lengths, cables, command, saturated, self._rewind(correction), loads, memory_rate)
+        return Instant(
+            state,
+            lengths,
+            cables,
+            command,
+            asked.throttle != command.throttle,
+            asked.deflection != command.deflection,
+            self._rewind(correction),
+            loads,
+            memory_rate,
+        )
 
     def vector_field(self, time: Float[Array, ""], vector: Float[Array, "n"]) -> Float[Array, "n"]:
         """Return the time derivative of the integrator's vector at time t [s]; dL_t/dt = −Ψ."""

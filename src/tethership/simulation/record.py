@@ -37,9 +37,9 @@ def _ship(loop: ClosedLoop, time: Float[Array, ""], now: Instant) -> dict[str, A
         "density": air.density,
         "rate_of_climb": -rotation[2] @ velocity_b,
         "throttle": now.command.throttle,
-        "saturated": now.saturated.throttle.astype(float),
+        "saturated": now.saturated.astype(float),
         "deflection": now.command.deflection,
-        "deflection_saturated": now.saturated.deflection.astype(float),
+        "deflection_saturated": now.fins_saturated.astype(float),
         "clearance": plant.environment.ground - plant.ship.lowest_point(state),
     }
 

@@ -79,7 +79,7 @@ def signals(loop: ClosedLoop, now: Instant) -> Signals:
         throttle=now.command.throttle,
         roll=now.state.attitude[0],
         pitch=now.state.attitude[1],
-        saturated=(jnp.any(now.saturated.throttle) | jnp.any(now.saturated.deflection)).astype(float),
+        saturated=(jnp.any(now.saturated) | jnp.any(now.fins_saturated)).astype(float),
         rewind_rate=jnp.min(now.rewind_rate) if cables else zero,
         clearance=loop.plant.environment.ground - loop.plant.ship.lowest_point(now.state),
         misalignment=misalignment(now.state.attitude, cables[0].span) if cables else zero,

@@ -3,14 +3,13 @@
 Depends on: simulation.quasi_static, results, scenario. Command, picture, replay and explorer all say these words.
 """
 
-from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 import xarray as xr
 
-from tethership.results.limits import HARMFUL, LIMITS
-from tethership.results.metrics import seconds_above
+from tethership.results.limits import HARMFUL
+from tethership.results.metrics import refined, saturated_seconds, seconds_above
 from tethership.scenario import ScenarioConfig
 from tethership.scenario.wind_file import record_warning
 from tethership.simulation.outcome import Outcome
@@ -48,23 +47,20 @@ class Flown(Protocol):
         """How it ended."""
         ...
 
-    @property
-    def metrics(self) -> Mapping[str, Any]:
-        """Its metrics."""
-        ...
-
 
 def seconds_passed(flight: Flown) -> dict[str, float]:
     """Return for how long [s] every watched limit was passed, only those that were; by the names of `results.limits`.
 
     Tension is that at the tether point; a cable breaks where its largest tension reaches its own breaking force.
     """
-    if not flight.config.cables:
+    if not flight.config.cables or "tension" not in flight.data or "tension_largest" not in flight.data:
         return {}
-    passed = dict(zip(LIMITS, map(float, flight.metrics["seconds_above"]), strict=True))
+    time = flight.data["time"].to_numpy()
+    pull = refined(time, flight.data["tension"].to_numpy().max(axis=1))
+    passed = {name: seconds_above(*pull, limit) for name, limit in flight.config.watched_limits().items()}
     strength = np.array([cable.breaking_force for cable in flight.config.cables])
     strained = (flight.data["tension_largest"].to_numpy() / strength).max(axis=1)
-    passed["cable_break"] = seconds_above(flight.data["time"].to_numpy(), strained, 1.0)
+    passed["cable_break"] = seconds_above(time, strained, 1.0)
     broken = flight.outcome is Outcome.cable_broken or strained.max(initial=0.0) >= 1.0  # it ends there, after 0 s
     return {name: over for name, over in passed.items() if over > 0.0 or (name == "cable_break" and broken)}
 
@@ -77,11 +73,11 @@ def reservations(flight: Flown) -> list[str]:
         if name in HARMFUL and not (name == "cable_break" and flight.outcome is Outcome.cable_broken)
     ]
     time = flight.data["time"].to_numpy()
-    clearance = flight.data["clearance"].to_numpy()
+    clearance = flight.data["clearance"].to_numpy() if "clearance" in flight.data else np.zeros(0)
     if flight.config.has_ground() and clearance.min(initial=0.0) < -DIP:
         below = seconds_above(time, -clearance, 0.0)
         found.append(f"the hull was below the ground for {below:.1f} s (by up to {-clearance.min():.2f} m)")
-    saturated = flight.metrics["saturated_seconds"]
+    saturated = saturated_seconds(flight.data)
     if len(time) and saturated > SATURATED * time[-1]:
         found.append(f"commands were saturated for {saturated:.1f} s of {time[-1]:.1f} s")
     return found
@@ -90,7 +86,7 @@ def reservations(flight: Flown) -> list[str]:
 def verdict(flight: Flown) -> str:
     """Return how a flight ended and what must be said with it, as one sentence without its full stop."""
     time = flight.data["time"].to_numpy()
-    after = f" after {time[-1]:.2f} s" if len(time) else " at the start"
+    after = f" after {time[-1]:.1f} s" if len(time) else " at the start"
     words = f"{flight.outcome.name.replace('_', ' ')}{after}"
     reserved = reservations(flight)
     if not reserved:
@@ -101,7 +97,8 @@ def verdict(flight: Flown) -> str:
 
 def warnings(flight: Flown) -> list[str]:
     """Return what must be known besides the verdict: the record of the wind, cable below the ground, model ranges."""
-    time, dips = flight.data["time"].to_numpy(), flight.data["cable_clearance"].to_numpy()
+    time = flight.data["time"].to_numpy()
+    dips = flight.data["cable_clearance"].to_numpy() if "cable_clearance" in flight.data else np.zeros(0)
     said = [quasi_static_warning(flight), record_warning(flight.config.wind, float(time[-1]) if len(time) else 0.0)]
     if dips.size and dips.min() < -DIP:
         below = seconds_above(time, -dips.min(axis=1), 0.0)

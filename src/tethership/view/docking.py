@@ -94,7 +94,7 @@ def _title(figure: Figure, snapshots: Snapshots, title: str | None) -> None:
     config, flight = snapshots.config, snapshots.flight
     words = config.title if title is None else title
     flown = "  ·  ".join(flown_words(config, flight.attributes))
-    ended = "\n".join(textwrap.wrap(f"{flight.verdict[0].upper()}{flight.verdict[1:]}.", VERDICT_ROOM))
+    ended = "\n".join(textwrap.wrap(flight.verdict, VERDICT_ROOM))
     figure.text(LEFT, 0.978, words, fontsize=style.FONT + 4, weight="bold", color=style.INK, va="center")
     figure.text(LEFT, 0.954, flown, fontsize=style.FONT, color=style.INK, va="center")
     figure.text(LEFT, 0.944, ended, fontsize=style.FONT, color=style.INK, va="top", linespacing=1.15)
