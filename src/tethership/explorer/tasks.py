@@ -143,6 +143,7 @@ def _flight(scenario: Scenario, options: Mapping[str, Any], report: Report) -> d
     """Return a flight's metrics and histories."""
     from tethership.analysis import trim
     from tethership.simulation import dock
+    from tethership.simulation.trust import verdict
 
     report("looking for the equilibrium", None)
     point = trim(scenario)
@@ -167,7 +168,7 @@ def _flight(scenario: Scenario, options: Mapping[str, Any], report: Report) -> d
         "answer": flight.outcome.is_answer,
         "outcome": flight.outcome.name,
         "message": flight.outcome.value,
-        "verdict": flight.verdict,
+        "verdict": verdict(flight, digits=2),
         "reserved": bool(flight.reservations),
         "warnings": [*start, *flight.warnings],
         "time": float(flight.data["time"][-1]),

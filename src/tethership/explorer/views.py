@@ -127,7 +127,7 @@ def flight_head(result: dict[str, Any]) -> Any:
         return verdict("bad", result["message"])
     sound = "fair" if result["reserved"] else "good"
     kind = {"docked": sound, "time_limit": "fair", "ground_contact": "fair"}.get(result["outcome"], "bad")
-    line = verdict(kind, f"{_sentence(result['verdict'])} {result['message']}")
+    line = verdict(kind, f"{result['verdict']}. {result['message']}")
     found = result["metrics"]
     rows = [
         ("largest tension", f"{found['tension_max']:.1f}", "N"),

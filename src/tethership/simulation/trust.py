@@ -83,10 +83,10 @@ def reservations(flight: Flown) -> list[str]:
     return found
 
 
-def verdict(flight: Flown) -> str:
-    """Return how a flight ended and what must be said with it, as one sentence without its full stop."""
+def verdict(flight: Flown, digits: int = 1) -> str:
+    """Return how a flight ended and what must be said with it, without a full stop; seconds with so many digits."""
     time = flight.data["time"].to_numpy()
-    after = f" after {time[-1]:.1f} s" if len(time) else " at the start"
+    after = f" after {time[-1]:.{digits}f} s" if len(time) else " at the start"
     words = f"{flight.outcome.name.replace('_', ' ')}{after}"
     reserved = reservations(flight)
     if not reserved:
