@@ -14,9 +14,10 @@ from tethership.results.limits import HARMFUL, ratios_passed
 from tethership.scenario import Scenario, ScenarioConfig
 from tethership.system.balance import left_over
 
-STIFF_LINK = 3e5
-"""EA/L beyond which the search for a taut line's trim may be lost in the line's own stretch [N/m]: of four starts of
-the aerostat all end in trim up to 6e5, one at 2e6, none beyond 5e6."""
+STIFF_LINK = 1e5
+"""EA/L beyond which the search for a taut line's trim may be lost in the line's own stretch [N/m]. Of four starts of
+the aerostat all end in trim at 1e5; two at 3.3e5 (3 m); four at 5.8e5 (10 m); one at 1.0e6, 1.9e6 and 3.3e6; none of
+lines of 1 m and less at 5.8e6 and beyond."""
 
 
 class Judged(NamedTuple):
@@ -24,9 +25,9 @@ class Judged(NamedTuple):
 
     Attributes
     ----------
-    outcome : TrimOutcome
     saturated : tuple of str
         Thrusters and fins asked for more than they have.
+    outcome : TrimOutcome
     message : str
         A sentence: how it ended, by how much, and the cure.
     warnings : tuple of str
@@ -37,8 +38,8 @@ class Judged(NamedTuple):
         Height of the lowest points of hull and cables above the ground [m]; None where there is no ground or no cable.
     """
 
-    outcome: TrimOutcome
     saturated: tuple[str, ...]
+    outcome: TrimOutcome
     message: str
     warnings: tuple[str, ...]
     limits_passed: dict[str, float]
@@ -54,8 +55,8 @@ def judge(scenario: Scenario, found: Described, limit: float, height_sought: boo
     [outcome] = outcomes(rows, np.array([bool(saturated)]), np.array([limit]), config.has_ground(), height_sought)
     passed = limits_passed(config, np.asarray(found.tension), np.asarray(found.largest))
     return Judged(
-        outcome,
         tuple(saturated),
+        outcome,
         _message(scenario, found, outcome, saturated, limit, height_sought, passed),
         tuple(_warnings(config, found, outcome, passed)),
         passed,
@@ -181,7 +182,7 @@ def _warnings(
     if outcome.is_start and config.has_ground():
         for cable, height in zip(config.cables, found.cables, strict=True):
             if height < -UNDER_GROUND:
-                yield (f"the cable {cable.name} dips {-float(height):.2f} m below the ground; contact is not modelled")
+                yield f"the cable {cable.name} dips {-float(height):.2f} m below the ground; contact is not modelled"
 
 
 def _cure(config: ScenarioConfig, needs: dict[str, str]) -> str:

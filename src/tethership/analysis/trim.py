@@ -112,16 +112,4 @@ def solved(scenario: Scenario, question: Question) -> tuple[np.ndarray, TrimPoin
     values = solve(problem)
     found = described(problem, jnp.asarray(values))
     said = judge(scenario, found, float(residual_limit(scenario.system)), question.height_sought)
-    return values, TrimPoint(
-        found.state,
-        found.command,
-        found.tension,
-        found.clipped,
-        said.saturated,
-        said.outcome,
-        said.message,
-        said.warnings,
-        said.limits_passed,
-        said.clearance_hull,
-        said.clearance_cable,
-    )
+    return values, TrimPoint(found.state, found.command, found.tension, found.clipped, *said)
