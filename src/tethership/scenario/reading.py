@@ -30,22 +30,25 @@ def check_path(path: str | Path) -> None:
     except UnicodeEncodeError:
         raise ConfigError(f"the name {shown(text)} is not UTF-8; rename the file or folder") from None
     if "\0" in text or longest > 255:
-        what = "has a NUL" if "\0" in text else f"has a part of {longest} bytes (at most 255)"
+        what = (
+            "has a NUL (null character)" if "\0" in text else f"has a part of {longest} bytes, too long (at most 255)"
+        )
         raise ConfigError(f"the name {shown(text)} {what}; choose another name")
 
 
-def check_file_to_read(path: Path, most_bytes: int = MOST_BYTES) -> None:
-    """Raise ConfigError where a file is not there, not regular (a pipe or device never ends) or too large."""
+def check_file_to_read(path: Path, most_bytes: int = MOST_BYTES, what: str = "") -> None:
+    """Raise ConfigError where a file (of `what`) is not there, not regular (a pipe never ends) or too large."""
+    named = f"{what} of {path}" if what else f"{path}"
     check_path(path)
     try:
         found = path.stat()
     except OSError as error:
-        raise ConfigError(f"cannot read {path}: {error.strerror or error}") from error
+        raise ConfigError(f"cannot read {named}: {error.strerror or error}") from error
     if not stat.S_ISREG(found.st_mode):
-        raise ConfigError(f"cannot read {path}: it is no regular file; name a file")
+        raise ConfigError(f"cannot read {named}: it is no regular file; name a file")
     if found.st_size > most_bytes:
         size, most = (f"{count / 1e6:.0f} MB" for count in (found.st_size, most_bytes))
-        raise ConfigError(f"cannot read {path}: it has {size}; at most {most} are read")
+        raise ConfigError(f"cannot read {named}: it has {size}; at most {most} are read")
 
 
 def read_text(path: Path) -> str:

@@ -71,7 +71,7 @@ def read_record(path: Path, height: float | None = None) -> Record:
     ConfigError
         The file cannot be read, lacks a column, has a unit or number that is none, or a gap too long to be bridged.
     """
-    check_file_to_read(path, LARGEST_FILE)
+    check_file_to_read(path, LARGEST_FILE, "the wind")
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise ConfigError(f"{path}: a measured wind is a .csv, .txt, .dat or .nc file with {WANTED}")
