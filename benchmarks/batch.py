@@ -13,7 +13,7 @@ import numpy as np
 import tethership as ts
 from tethership.campaign import Cases, fly_cases, layer_switches, perturbed
 from tethership.campaign.flights import BATCH
-from tethership.fitting.targets import TABLES
+from tethership.studies.docking_paper.fit.targets import TABLES
 
 EACH = BATCH
 """Flights of each row: whole batches, so that no lane flies twice."""

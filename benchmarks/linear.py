@@ -16,8 +16,8 @@ from jax.flatten_util import ravel_pytree
 
 import tethership as ts
 from tethership.analysis import linearize
-from tethership.analysis.linearize import Matrices, differentiate
-from tethership.analysis.right_side import input_vector
+from tethership.analysis.linear.linearize import Matrices, differentiate
+from tethership.analysis.linear.right_side import input_vector
 
 REPEATS = 7
 

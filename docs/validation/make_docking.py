@@ -9,8 +9,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from tethership.fitting.fit_file import stored_fit
-from tethership.reproduction.misprints import MISPRINTS
+from tethership.studies.docking_paper.fit.fit_file import stored_fit
+from tethership.studies.docking_paper.misprints import MISPRINTS
 
 HERE = Path(__file__).parent
 SHOWN = ("figure_12", "figure_13", "figure_14", "figure_15", "fit_marginals", "fit_residuals")

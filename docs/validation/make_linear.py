@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 import tethership as ts
-from tethership.reproduction import CLAIMS, FIGURES, check_claims, linear_figure
-from tethership.reproduction.linear_claims import FINS, LITERATURE_FINS
+from tethership.studies.docking_paper import CLAIMS, FIGURES, check_claims, linear_figure
+from tethership.studies.docking_paper.linear_claims import FINS, LITERATURE_FINS
 from tethership.view import plot_linear_figure
 
 HERE = Path(__file__).parent

@@ -2,15 +2,15 @@
 
 ::
 
+                 studies                                   one paper's whole study, with commands of its own
                      cli                                   commands
                   explorer                                 a local page: numbers are changed, views follow
                     view                                   plots: draws the data it is given
-                reproduction                               the paper's figures and claims; returns data
-                  fitting                                  identification, tuning
+                  tuning                                   gains and designs over many flights
                   campaign                                 many flights, odds
-          simulation  │   analysis                         one flight │ trim, linear model, modes, sweeps
-                  scenario                                 TOML → system + laws + run settings, validated
-            system    │   control                          the plant │ the laws
+          simulation  │   analysis                         one flight │ trim, linear model, modes, loci
+                  scenario                                 TOML → plant + laws + run settings, validated
+             plant    │   control                          the plant │ the laws
                    physics                                 one phenomenon per file
                    results                                 names, units and files of outputs; metrics on arrays
                    spatial                                 rotations, wrenches, constants
@@ -35,6 +35,7 @@ import tethership._interrupt  # noqa: F401 (acts on being imported, before what 
 import jax
 
 from tethership._cache import checks_without_callbacks, use_compilation_cache
+from tethership._studies import studied
 from tethership._version import __version__
 from tethership.errors import ConfigError, SolveError, TethershipError, TethershipWarning
 
@@ -57,14 +58,12 @@ if TYPE_CHECKING:
     )
     from tethership.campaign import Campaign, open_results, run_campaign
     from tethership.control import AbstractLaw, Correction, Measurement
-    from tethership.reproduction import check_claims, linear_figure
     from tethership.scenario import Scenario, list_packaged, list_parameters, load_scenario, scenario_at
     from tethership.simulation import Flight, Outcome, dock, fly_again
     from tethership.view import (
         interactive_root_locus,
         plot_campaign,
         plot_docking,
-        plot_linear_figure,
         plot_loads,
         plot_modes,
         plot_root_locus,
@@ -85,11 +84,9 @@ _HOMES = {
     "Sweep": "analysis",
     "TrimOutcome": "analysis",
     "TrimPoint": "analysis",
-    "check_claims": "reproduction",
     "dock": "simulation",
     "fly_again": "simulation",
     "interactive_root_locus": "view",
-    "linear_figure": "reproduction",
     "linearize": "analysis",
     "list_packaged": "scenario",
     "list_parameters": "scenario",
@@ -97,7 +94,6 @@ _HOMES = {
     "open_results": "campaign",
     "plot_campaign": "view",
     "plot_docking": "view",
-    "plot_linear_figure": "view",
     "plot_loads": "view",
     "plot_modes": "view",
     "plot_root_locus": "view",
@@ -109,18 +105,22 @@ _HOMES = {
     "write_replay": "view",
 }
 
+_OFFERED = ("check_claims", "linear_figure", "plot_linear_figure")
+"""Of the paper's study, which reaches the library by an entry point."""
+
 _PARTS = (
     "analysis",
     "campaign",
     "control",
     "explorer",
     "physics",
-    "reproduction",
     "results",
     "scenario",
     "simulation",
     "spatial",
-    "system",
+    "studies",
+    "tuning",
+    "plant",
     "view",
 )
 
@@ -143,11 +143,9 @@ __all__ = [
     "TrimOutcome",
     "TrimPoint",
     "__version__",
-    "check_claims",
     "dock",
     "fly_again",
     "interactive_root_locus",
-    "linear_figure",
     "linearize",
     "list_packaged",
     "list_parameters",
@@ -155,7 +153,6 @@ __all__ = [
     "open_results",
     "plot_campaign",
     "plot_docking",
-    "plot_linear_figure",
     "plot_loads",
     "plot_modes",
     "plot_root_locus",
@@ -174,8 +171,10 @@ def __getattr__(name: str) -> Any:
         return getattr(importlib.import_module(f"tethership.{_HOMES[name]}"), name)
     if name in _PARTS:
         return importlib.import_module(f"tethership.{name}")
+    if name in _OFFERED:
+        return studied(name)
     raise AttributeError(f"module 'tethership' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return sorted([*__all__, *_OFFERED])

@@ -178,9 +178,8 @@ def refusal_or_sweep(command, monkeypatch, tmp_path):
     def nothing(*_):
         raise SolveError("taken")
 
-    monkeypatch.setattr("tethership.reproduction.linear_figure", nothing)
+    monkeypatch.setattr("tethership.studies.docking_paper.cli.figures.linear_figure", nothing)
     monkeypatch.setattr(module, "_swept", nothing)
-    monkeypatch.setattr(module, "_figures", nothing)
 
     def call(*words):
         code, out, err = command(*words)

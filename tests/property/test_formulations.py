@@ -19,10 +19,10 @@ import tethership as ts
 from tethership.physics.atmosphere import ConstantAtmosphere
 from tethership.physics.gust import CosineGust
 from tethership.physics.rigid_body import RigidBody
+from tethership.plant import Command, State, TetheredAirship
+from tethership.plant.ship import mass_matrix
 from tethership.scenario.build import assemble
 from tethership.spatial import rotation_matrix, skew
-from tethership.system import Command, State, TetheredAirship
-from tethership.system.airship import mass_matrix
 
 BOTH = ("consistent", "published")
 RATE_SCALES = np.array([6.0, 2.0, 2.0, 0.2, 0.2, 0.2, 0.5, 0.5, 3.0, 5.0, 5.0, 5.0])

@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 import tethership as ts
+from tethership.plant import Command, State
 from tethership.simulation.closed_loop import ClosedLoop
 from tethership.spatial import rotation_matrix
-from tethership.system import Command, State
 
 BOTH = ("consistent", "published")
 TENSIONS = {"slack": (0.0, 100.0), "pulling": (155.0, 190.0), "taut": (230.0, 3000.0)}

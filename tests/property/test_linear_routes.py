@@ -12,12 +12,13 @@ import numpy as np
 import pytest
 
 import tethership as ts
-from tethership.analysis import linearize, semi_analytic
-from tethership.analysis.right_side import input_vector
-from tethership.analysis.semi_analytic import inertial_stiffness
+from tethership.analysis import linearize
+from tethership.analysis.linear import semi_analytic
+from tethership.analysis.linear.right_side import input_vector
+from tethership.analysis.linear.semi_analytic import inertial_stiffness
+from tethership.plant import Command, State
 from tethership.scenario.build import assemble
 from tethership.spatial import rotation_matrix, skew
-from tethership.system import Command, State
 
 BOTH = ("consistent", "published")
 CASES = ("docking", "aerostat", "cruise", "side_cables", "hover")

@@ -14,9 +14,9 @@ from tethership.campaign.plan import make_plan
 from tethership.campaign.trust import ON_TENSION
 from tethership.cli.campaign import _numbers, _shown
 from tethership.simulation.quasi_static import largest_impulse, share_outside
-from tethership.view.campaign_csv import write_exceedance
-from tethership.view.campaign_setting import compliance_section
-from tethership.view.words import percent
+from tethership.view.campaign.csv import write_exceedance
+from tethership.view.campaign.setting import compliance_section
+from tethership.view.flight.captions import percent
 
 LAYERS = (("rewind",), ("rewind", "heading", "navigation"))
 

@@ -15,7 +15,7 @@ import pytest
 import tethership as ts
 from tethership.cli import main
 from tethership.cli.sweep import _axis
-from tethership.system.state import STATE_NAMES
+from tethership.plant.state import STATE_NAMES
 
 MODE_KEYS = {"name", "eigenvalue", "frequency", "damping", "half_or_double_time"}
 SWEEP_KEYS = {"parameter", "tracks", "events", "parameters", "units", "shape", "outcome", "throttle", "files"}

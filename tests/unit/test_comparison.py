@@ -13,14 +13,14 @@ import pytest
 import tethership as ts
 from tethership.errors import ConfigError
 from tethership.spatial import rotation_matrix
+from tethership.studies.docking_paper.view.comparison import AZIMUTH, ELEVATION, plot_comparison, three_quarter
+from tethership.studies.docking_paper.view.ground_box import box_around, marking
+from tethership.studies.docking_paper.view.interactive_flight import interactive_flight, interactive_histories
 from tethership.view import plot_docking, style
-from tethership.view.comparison import AZIMUTH, ELEVATION, plot_comparison, three_quarter
-from tethership.view.ground_box import box_around, marking
-from tethership.view.hull_mesh import ship_mesh
-from tethership.view.interactive_flight import interactive_flight, interactive_histories
-from tethership.view.projection import FROM_EAST
-from tethership.view.sampling import evenly, listed, with_peaks
-from tethership.view.snapshots import take_snapshots
+from tethership.view.flight.hull_mesh import ship_mesh
+from tethership.view.flight.projection import FROM_EAST
+from tethership.view.flight.snapshots import take_snapshots
+from tethership.view.flight.thinning import evenly, listed, with_peaks
 
 VIEW = three_quarter(AZIMUTH, ELEVATION)
 

@@ -14,10 +14,10 @@ import xarray as xr
 
 import tethership as ts
 from tethership.errors import ConfigError, TethershipWarning
-from tethership.fitting.fit_file import fit_text, read_fit
 from tethership.results import VARIABLES, netcdf, store
 from tethership.results.schema import ATTRIBUTES, FLIGHT
 from tethership.simulation.header import FlightHeader, stored_solver
+from tethership.studies.docking_paper.fit.fit_file import fit_text, read_fit
 
 COUNT = 60
 SIZES = {

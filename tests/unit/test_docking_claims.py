@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import tethership as ts
-from tethership.fitting.targets import TABLES, published_rows
-from tethership.reproduction.docking_claims import (
+from tethership.results import store
+from tethership.studies.docking_paper.docking_claims import (
     FAR,
     SHORTEST_TIME,
     check_docking_claims,
@@ -24,9 +24,9 @@ from tethership.reproduction.docking_claims import (
     claim_10,
     claim_11,
 )
-from tethership.reproduction.flights_read import KEYS, peaks, throw
-from tethership.reproduction.table_claims import claim_1, claim_2, claim_3, claim_4
-from tethership.results import store
+from tethership.studies.docking_paper.fit.targets import TABLES, published_rows
+from tethership.studies.docking_paper.flights_read import KEYS, peaks, throw
+from tethership.studies.docking_paper.table_claims import claim_1, claim_2, claim_3, claim_4
 
 LIMITS = [144.3, 481.0, 2354.0, 3040.0]
 

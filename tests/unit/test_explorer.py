@@ -17,11 +17,11 @@ import tethership as ts
 from tethership.cli import main
 from tethership.errors import ConfigError, SolveError
 from tethership.explorer.choice import Form
-from tethership.explorer.desk import Desk
 from tethership.explorer.fields import groups, typed
 from tethership.explorer.folder import Folder
+from tethership.explorer.queue import Desk
+from tethership.explorer.requests import Understanding
 from tethership.explorer.tasks import compute
-from tethership.explorer.understanding import Understanding
 from tethership.explorer.worker import Stopped
 from tethership.scenario.load import packaged_text
 
@@ -305,7 +305,7 @@ def test_two_pages_do_not_take_each_others_work(known, desk):
 
 
 def test_work_of_a_page_that_was_closed_makes_room(known, desk, monkeypatch):
-    monkeypatch.setattr("tethership.explorer.desk.GONE", 0.05)
+    monkeypatch.setattr("tethership.explorer.queue.GONE", 0.05)
     closed, other = (known.request("trim", Form("docking", {"wind.speed": str(speed)}), OVER) for speed in (7, 8))
     desk.ask("closed", closed)
     until(lambda: desk.find(lambda one: one == closed) and desk.worker.jobs)

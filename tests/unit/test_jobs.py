@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tethership.reproduction.jobs import Job, Settings, belongs, load_part, plain, run_jobs
+from tethership.studies.docking_paper.jobs import Job, Settings, belongs, load_part, plain, run_jobs
 
 MODULE = """
 import time
@@ -105,5 +105,5 @@ def test_parts_of_one_study_belong_together(jobs, tmp_path, monkeypatch):
     assert belongs(folder, "second", Settings("published", seed=7))
     assert not belongs(folder, "second", Settings("consistent", seed=2))
     assert not belongs(folder, "third", Settings("published", seed=2))
-    monkeypatch.setattr("tethership.reproduction.jobs.source_digest", lambda: "other code")
+    monkeypatch.setattr("tethership.studies.docking_paper.jobs.source_digest", lambda: "other code")
     assert not belongs(folder, "second", Settings("published", seed=2))

@@ -15,9 +15,9 @@ from jaxtyping import Array, Float
 
 import tethership as ts
 from tethership.control import AbstractLaw, Correction, LayeredLaw, Measurement
+from tethership.plant import Command, State
 from tethership.simulation.closed_loop import ClosedLoop
 from tethership.spatial import rotation_matrix
-from tethership.system import Command, State
 
 LAYERS = ("rewind", "heading", "navigation")
 SUBSETS = [subset for n in range(4) for subset in itertools.combinations(LAYERS, n)]

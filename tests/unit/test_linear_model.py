@@ -11,10 +11,10 @@ import pytest
 import xarray as xr
 
 import tethership as ts
+from tethership.plant import State
+from tethership.plant.state import STATE_NAMES, STATE_UNITS
 from tethership.results import netcdf
 from tethership.results.schema import FLIGHT, LINEAR_MODEL
-from tethership.system import State
-from tethership.system.state import STATE_NAMES, STATE_UNITS
 
 LONGITUDINAL = ("u", "w", "q", "theta", "north", "down")
 LATERAL = ("v", "p", "r", "phi", "psi", "east")

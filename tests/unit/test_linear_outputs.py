@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import tethership as ts
+from tethership.plant import State
+from tethership.plant.state import STATE_NAMES
 from tethership.results import netcdf
 from tethership.results.schema import LINEAR_MODEL
 from tethership.spatial import rotation_matrix
-from tethership.system import State
-from tethership.system.state import STATE_NAMES
 
 OUTPUTS = ("tension_nose", "airspeed", "angle_of_attack", "sideslip", "rate_of_climb", "clearance")
 

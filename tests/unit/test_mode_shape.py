@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 import tethership as ts
 from tethership.errors import ConfigError
-from tethership.view.mode_shape import ATTITUDE, POSITION, REACH, mode_motion, plot_all_modes
+from tethership.view.linear.mode_shape import ATTITUDE, POSITION, REACH, mode_motion, plot_all_modes
 
 
 @pytest.fixture(scope="module")

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import tethership as ts
-from tethership.analysis.mode_names import SLOTS, slots_of, track_names, unique
-from tethership.analysis.spectrum import analyse
-from tethership.system.state import STATE_NAMES
+from tethership.analysis.modes.names import SLOTS, slots_of, track_names, unique
+from tethership.analysis.modes.spectrum import analyse
+from tethership.plant.state import STATE_NAMES
 
 ALONE = {
     "u": "surge",

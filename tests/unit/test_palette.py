@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tethership.view import style
-from tethership.view.page_file import page_text
+from tethership.view.report.page_file import page_text
 
 LEAST = 12.0
 """Least distance of two colours, CIEDE2000: some five times what is just seen side by side."""

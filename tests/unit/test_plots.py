@@ -18,11 +18,11 @@ import tethership as ts
 from tethership.errors import SolveError
 from tethership.scenario import VehicleConfig
 from tethership.view import plot_docking
-from tethership.view.histories import spread
-from tethership.view.projection import FROM_EAST, FROM_NORTH, FROM_TOP
-from tethership.view.ship import ship_outlines, ship_shape, silhouette
-from tethership.view.snapshots import snapshot_indices, snapshot_interval, take_snapshots
-from tethership.view.words import compass
+from tethership.view.flight.captions import compass
+from tethership.view.flight.histories import spread
+from tethership.view.flight.projection import FROM_EAST, FROM_NORTH, FROM_TOP
+from tethership.view.flight.ship import ship_outlines, ship_shape, silhouette
+from tethership.view.flight.snapshots import snapshot_indices, snapshot_interval, take_snapshots
 
 CHANGES = {"stop.time_limit": 5.0, "gusts.0.start": 1.0, "gusts.0.period": 2.0}
 VIEWS = {0: FROM_NORTH, 1: FROM_EAST, 2: FROM_TOP}

@@ -14,9 +14,9 @@ from tethership.control import Measurement, misalignment
 from tethership.control.heading import HeadingLaw, LineHeadingLaw, SineHeadingLaw
 from tethership.control.navigation import LineOfSightNavigationLaw, NavigationLaw
 from tethership.physics.gust import BareCosine, CosineGust, RepeatedCosine
+from tethership.plant import State
+from tethership.plant.plant import cable_between
 from tethership.spatial import rotation_matrix
-from tethership.system import State
-from tethership.system.tethered import cable_between
 
 ANGLES = np.random.default_rng(1).uniform(-np.pi, np.pi, 200)
 

@@ -18,11 +18,11 @@ from tethership.cli.view import view
 from tethership.scenario import ScenarioConfig
 from tethership.scenario.load import from_document, validated
 from tethership.spatial import rotation_matrix
+from tethership.view.flight.ship import ship_shape
 from tethership.view.replay.derived import quaternions, rotations, thrusts
 from tethership.view.replay.page import replay_page
 from tethership.view.replay.scene import scene
 from tethership.view.replay.tracks import BUDGET, chosen, tracks
-from tethership.view.ship import ship_shape
 
 
 @pytest.fixture(scope="module")

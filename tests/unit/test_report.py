@@ -16,8 +16,8 @@ import pytest
 from plotly.offline import get_plotlyjs
 
 from tethership.errors import ConfigError
-from tethership.view.report import VERDICTS, Figure, Section, Table, write_report
-from tethership.view.report_text import marked, number
+from tethership.view.report.report import VERDICTS, Figure, Section, Table, write_report
+from tethership.view.report.text import marked, number
 
 VOID = {"meta", "img", "br", "link", "hr", "input"}
 EVIL = "<script>alert('1')</script> & \"quotes\""

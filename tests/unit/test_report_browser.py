@@ -7,7 +7,7 @@ import plotly.graph_objects as go
 import pytest
 from matplotlib.figure import Figure as Drawing
 
-from tethership.view.report import Figure, Section, Table, write_report
+from tethership.view.report.report import Figure, Section, Table, write_report
 
 
 def told(dom, name):

@@ -14,12 +14,12 @@ import pytest
 from matplotlib.figure import Figure
 
 import tethership as ts
-from tethership.analysis.events import find_events
-from tethership.analysis.mode_names import slots_of
-from tethership.analysis.tracking import eigen_path, follow, named_order, partners_of
-from tethership.view.interactive import interactive_root_locus, write_page
-from tethership.view.mode_names import ANNOTATION
-from tethership.view.root_locus import SLOWEST, display
+from tethership.analysis.loci.locus_events import find_events
+from tethership.analysis.loci.tracking import eigen_path, follow, named_order, partners_of
+from tethership.analysis.modes.names import slots_of
+from tethership.view.linear.interactive_locus import interactive_root_locus, write_page
+from tethership.view.linear.mode_names import ANNOTATION
+from tethership.view.linear.root_locus import SLOWEST, display
 
 STATES = ("q", "u", "north")
 """In the order of their modes: pitch subsidence, surge, north."""

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import tethership as ts
-from tethership.analysis.sensitivity import ordinary_step, rank_sensitivities
+from tethership.analysis.loci.sensitivity import ordinary_step, rank_sensitivities
 from tethership.cli import main
 
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import tethership as ts
-from tethership.fitting.fit_file import stored_fit
-from tethership.fitting.space import UNKNOWNS, named_values, to_values
-from tethership.fitting.spectrum import GROWTH, MILD, NO_OSCILLATION, PARTS, Spectrum, unmet
+from tethership.studies.docking_paper.fit.fit_file import stored_fit
+from tethership.studies.docking_paper.fit.space import UNKNOWNS, named_values, to_values
+from tethership.studies.docking_paper.fit.spectrum import GROWTH, MILD, NO_OSCILLATION, PARTS, Spectrum, unmet
 
 NAMES = [unknown.name for unknown in UNKNOWNS]
 

@@ -10,8 +10,8 @@ import pytest
 
 import tethership as ts
 from tethership.analysis import TrimOutcome
-from tethership.analysis.grid import fill_lines
-from tethership.system import Command, State
+from tethership.analysis.loci.grid import fill_lines
+from tethership.plant import Command, State
 
 WIND = np.linspace(6.0, 12.0, 13)
 ELONGATIONS = (0.8, 0.95, 1.02)

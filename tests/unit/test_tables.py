@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tethership.reproduction.tables import (
+from tethership.studies.docking_paper.tables import (
     compare,
     computed_numbers,
     counts,

@@ -15,14 +15,22 @@ from matplotlib.figure import Figure
 
 import tethership as ts
 from tethership.control import Measurement
-from tethership.reproduction.terms import NUDGES, PARTS, TERMS, load_breakdown, switch_off, switched_off, weighted
+from tethership.plant import Command, State
+from tethership.plant.ship import mass_matrix
 from tethership.scenario import list_parameters
 from tethership.scenario.load import from_document
 from tethership.spatial import STANDARD_GRAVITY
-from tethership.system import Command, State
-from tethership.system.airship import mass_matrix
+from tethership.studies.docking_paper.terms import (
+    NUDGES,
+    PARTS,
+    TERMS,
+    load_breakdown,
+    switch_off,
+    switched_off,
+    weighted,
+)
+from tethership.studies.docking_paper.view.breakdown import load_sizes, plot_breakdown
 from tethership.view import style
-from tethership.view.breakdown import load_sizes, plot_breakdown
 
 WIND = 12.0
 RNG = np.random.default_rng(5)

@@ -19,8 +19,8 @@ import tethership as ts
 from tethership.physics.atmosphere import ConstantAtmosphere
 from tethership.physics.gravity import Gravity
 from tethership.physics.rigid_body import RigidBody
+from tethership.plant import Command, State, TetheredAirship
 from tethership.spatial import skew
-from tethership.system import Command, State, TetheredAirship
 
 TOLERANCE = 1e-11
 """Relative tolerance of the integrator (Dopri8); errors of the flights below stay under 1e-8."""

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import tethership as ts
-from tethership.reproduction.dynamic_cable import dynamic_line, line_properties
-from tethership.reproduction.line_comparison import compare_line, snaps
-from tethership.system.tethered import cable_between
+from tethership.plant.plant import cable_between
+from tethership.studies.docking_paper.dynamic_cable import dynamic_line, line_properties
+from tethership.studies.docking_paper.line_comparison import compare_line, snaps
 
 pytest.importorskip("moordyn", reason="MoorDyn is not installed: pip install 'tethership[reproduce]'")
 
-from tethership.reproduction.moordyn_line import MoorDynLine
+from tethership.studies.docking_paper.moordyn_line import MoorDynLine
 
 LENGTH, SEGMENTS = 20.0, 20
 

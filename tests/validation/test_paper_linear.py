@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import tethership as ts
-from tethership.reproduction import CLAIMS, FIGURES, check_claims, linear_figure
-from tethership.reproduction.linear_claims import CLAIMS as CLAIM_FUNCTIONS
-from tethership.reproduction.linear_claims import claim_9, fins
+from tethership.studies.docking_paper import CLAIMS, FIGURES, check_claims, linear_figure
+from tethership.studies.docking_paper.linear_claims import CLAIMS as CLAIM_FUNCTIONS
+from tethership.studies.docking_paper.linear_claims import claim_9, fins
 
 BOTH = ("consistent", "published")
 

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import tethership as ts
+from tethership.plant import Command
 from tethership.spatial import SEA_LEVEL_DENSITY, rotation_matrix
-from tethership.system import Command
 
 BOTH = ("consistent", "published")
 NAMES = ["tail_forward", "tail_down", "port_up", "starboard_up", "port_forward", "starboard_forward"]

@@ -15,8 +15,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from tethership.analysis.continuation import nearby_equilibrium
-from tethership.analysis.posing import Question, ask, pose
+from tethership.analysis.loci.continuation import nearby_equilibrium
+from tethership.analysis.trim.problem import Question, ask, pose
 from tethership.errors import ConfigError
 from tethership.scenario import Scenario, ScenarioConfig, list_parameters
 from tethership.scenario.build import build_system

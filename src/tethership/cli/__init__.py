@@ -9,6 +9,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from tethership._interrupt import loaded
+from tethership._studies import commands
 from tethership._version import __version__
 from tethership.cli import (
     campaign,
@@ -16,10 +17,8 @@ from tethership.cli import (
     explore,
     export,
     files,
-    identify,
     listing,
     modes,
-    reproduce,
     sweep,
     tension,
     trim,
@@ -60,9 +59,10 @@ app.command("trim", epilog=trim.EXAMPLE)(checked(trim.trim))
 app.command("modes", epilog=modes.EXAMPLE)(checked(modes.modes))
 app.command("sweep", epilog=sweep.EXAMPLE)(checked(sweep.sweep))
 app.command("tension", epilog=tension.EXAMPLE)(checked(tension.tension))
-app.command("identify", epilog=identify.EXAMPLE)(checked(identify.identify))
 app.command("tune", epilog=tune.EXAMPLE)(checked(tune.tune))
-app.command("reproduce", epilog=reproduce.EXAMPLE)(checked(reproduce.reproduce))
+for entry in commands():
+    command = entry.load()
+    app.command(entry.name, epilog=command.__globals__["EXAMPLE"])(checked(command))
 app.command("campaign", epilog=campaign.EXAMPLE)(checked(campaign.campaign))
 app.command("view", epilog=view.EXAMPLE)(checked(view.view))
 app.command("export", epilog=export.EXAMPLE)(checked(export.export))

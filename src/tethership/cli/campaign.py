@@ -121,7 +121,7 @@ def _scenario_changes(wind: float | None, formulation: str | None, changes: list
 
 def _concluded(found: Any, folder: Path) -> dict[str, Any]:
     """Return what the flights say, with the files it was written to."""
-    from tethership.view.campaign_report import write_campaign
+    from tethership.view.campaign.report import write_campaign
 
     plan, answers = found.plan, found.answers
     written = write_campaign(folder, plan, found.data, answers, _footer(plan))
@@ -167,8 +167,8 @@ def _numbers(result: dict[str, Any]) -> list[Row]:
 
 def _shown(result: dict[str, Any]) -> list[tuple[str, list[Row]]]:
     """Return titles and rows of what is told: probabilities law by law, and verdicts."""
-    from tethership.view.campaign_setting import trusted
-    from tethership.view.words import percent, percents, trust
+    from tethership.view.campaign.setting import trusted
+    from tethership.view.flight.captions import percent, percents, trust
 
     found = []
     for name, law in result["laws"].items():

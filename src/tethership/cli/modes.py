@@ -76,7 +76,7 @@ def modes(
     result = head | summary(model, found) | ({} if ranked is None else {"sensitivity": _ranked(ranked)})
     if folder is not None:
         with stage("draw"):
-            from tethership.view.mode_shape import plot_all_modes
+            from tethership.view.linear.mode_shape import plot_all_modes
             from tethership.view.picture import png
 
             drawn = png(plot_all_modes(model), 120, model.run)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 import typer
 
+from tethership._studies import studied
 from tethership.cli.common import (
     NO_ANSWER,
     FormulationOption,
@@ -70,7 +71,7 @@ def sweep(
             raise ConfigError(f"--figure has its own scenarios; leave out {scenario!r}, or change values with --set")
         writable_folder(out)
         writable_csv(csv)
-        result, found = _figures(figure, formulation, _set(wind, changes), out)
+        result, found = studied("figures")(figure, formulation, _set(wind, changes), out)
     else:
         loaded = chosen_scenario(scenario, wind, formulation, changes)
         axes = [_axis(loaded, text) for text in over or []]
@@ -104,9 +105,9 @@ def _swept(scenario: Scenario, axes: list[dict[str, np.ndarray]], out: Path) -> 
     head = {"wind": scenario.config.wind.speed, "formulation": scenario.formulation}
     result = head | summary(found)
     with stage("draw"):
-        from tethership.view.interactive import interactive_root_locus, page
+        from tethership.view.linear.interactive_locus import interactive_root_locus, page
+        from tethership.view.linear.root_locus import plot_root_loci
         from tethership.view.picture import png
-        from tethership.view.root_locus import plot_root_loci
 
         drawn = page(interactive_root_locus(found, scenario.config.title))
         picture = png(plot_root_loci(found), 120)
@@ -115,35 +116,9 @@ def _swept(scenario: Scenario, axes: list[dict[str, np.ndarray]], out: Path) -> 
     return result, [found]
 
 
-def _figures(
-    number: int, formulation: str | None, changes: dict[str, Any], out: Path
-) -> tuple[dict[str, Any], list["Sweep"]]:
-    """Return one figure of the paper in one formulation or both; writes figure_NN_FORMULATION.png and .html."""
-    from tethership.reproduction import linear_figure
-
-    files, shown, sweeps = [], {}, []
-    chosen = formulation or changes.get("formulation")
-    for name in ("consistent", "published") if chosen is None else (chosen,):
-        with stage(f"figure {number}, {name}"):
-            drawn = linear_figure(number, name, changes)
-        with stage("draw"):
-            from tethership.view.interactive import interactive_linear_figure, page
-            from tethership.view.picture import png
-            from tethership.view.root_locus import plot_linear_figure
-
-            stem = f"figure_{number:02d}_{name}"
-            picture, explored = png(plot_linear_figure(drawn), 120), page(interactive_linear_figure(drawn))
-        files += map(str, write_together({out / f"{stem}.png": picture, out / f"{stem}.html": explored}))
-        sweeps += [panel.sweep for panel in drawn.panels]
-        shown[name] = [{"title": panel.title, **summary(panel.sweep)} for panel in drawn.panels]
-    first = next(iter(shown))
-    top = {key: value for key, value in shown[first][0].items() if key != "title"}
-    return {"figure": number, "formulation": first, **top, "formulations": shown, "files": files}, sweeps
-
-
 def summary(found: "Sweep") -> dict[str, Any]:
     """Return the keys that scripts may rely on, SI; angles among the parameters in degrees."""
-    from tethership.analysis.sweep_warnings import sweep_warnings
+    from tethership.analysis.loci.sweep_warnings import sweep_warnings
 
     first = next(iter(found.values))
     factors = {name: 180.0 / math.pi if unit == "rad" else 1.0 for name, unit in found.units.items()}
@@ -247,7 +222,7 @@ def _range(scenario: Scenario, name: str, text: str) -> np.ndarray:
 
 def _points(name: str, text: str, typed: str) -> int:
     """Return the number of points, no more than a sweep may have."""
-    from tethership.analysis.grid import MOST_POINTS
+    from tethership.analysis.loci.grid import MOST_POINTS
 
     try:
         count = int(typed)

@@ -53,7 +53,7 @@ def trim(
     """
     from tethership.analysis import TrimOutcome
     from tethership.analysis import trim as solve
-    from tethership.system.state import STATE_NAMES
+    from tethership.plant.state import STATE_NAMES
 
     loaded = chosen_scenario(scenario, wind, formulation, changes)
     writable_csv(csv)

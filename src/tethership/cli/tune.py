@@ -46,8 +46,8 @@ def tune(
     saturates, the tension stays below the envelope's tear force, docking within 1.1 times the shortest time. Writes
     tuning.json and, for packaged scenarios, NAME_retuned.toml.
     """
-    from tethership.fitting.tune import tune as search
-    from tethership.fitting.tune import tuning_document
+    from tethership.tuning.tune import tune as search
+    from tethership.tuning.tune import tuning_document
 
     searched = min(24, flights) if searched is None else searched
     if searched > flights:
@@ -82,8 +82,8 @@ def _written(document: dict[str, Any], name: str, changes: list[str] | None, out
     """Write the tuning and its scenario; returns the files."""
     import json as json_module
 
-    from tethership.fitting.scenario_file import retuned_text
     from tethership.scenario.load import packaged_text
+    from tethership.tuning.scenario_file import retuned_text
 
     files = {out / "tuning.json": json_module.dumps(document, indent=1)}
     if not name.endswith(".toml") and not changes:

@@ -8,14 +8,14 @@ from dash import ALL, MATCH, Dash, Input, Output, Patch, State, ctx, no_update
 
 from tethership._version import __version__
 from tethership.errors import TethershipError
-from tethership.explorer.desk import Desk
 from tethership.explorer.fields import extra_field, known_parameters
 from tethership.explorer.page import VIEWS, page
 from tethership.explorer.panel import field, panel
-from tethership.explorer.showing import TEXTS, Showing, request_key
-from tethership.explorer.understanding import Understanding
+from tethership.explorer.queue import Desk
+from tethership.explorer.refresh import TEXTS, Showing, request_key
+from tethership.explorer.requests import Understanding
 from tethership.explorer.views import verdict
-from tethership.view.page_file import page_text
+from tethership.view.report.page_file import page_text
 
 FIELDS = {"name": ALL, "part": "field"}
 """All fields of the panel, in the same order."""

@@ -12,11 +12,11 @@ from types import FrameType
 from tethership.errors import ConfigError
 from tethership.explorer.app import make_app
 from tethership.explorer.connections import Server
-from tethership.explorer.desk import Desk
 from tethership.explorer.folder import Folder
 from tethership.explorer.guard import guard
+from tethership.explorer.queue import Desk
+from tethership.explorer.requests import Understanding
 from tethership.explorer.ticket import PARAMETER, Ticket
-from tethership.explorer.understanding import Understanding
 from tethership.explorer.worker import Worker
 
 LOOPBACK = "127.0.0.1"

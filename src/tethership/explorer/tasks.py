@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from tethership.errors import ConfigError
+from tethership.plant.state import STATE_NAMES
 from tethership.scenario import Scenario, load_scenario
 from tethership.scenario.quantity import converted
-from tethership.system.state import STATE_NAMES
 
 Report = Callable[[str, float | None], None]
 """Called with what is being done and the share that is done, None where that is not known; raises where to stop."""
@@ -87,7 +87,7 @@ def _trim(scenario: Scenario, options: Mapping[str, Any], report: Report) -> dic
 def _locus(scenario: Scenario, options: Mapping[str, Any], report: Report) -> dict[str, Any]:
     """Return the root locus along a parameter and the modes of the scenario itself."""
     from tethership.analysis import linearize, sweep, trim
-    from tethership.analysis.sweep_warnings import sweep_warnings
+    from tethership.analysis.loci.sweep_warnings import sweep_warnings
 
     name, points = options["name"], int(options["points"])
     low, high = (converted(value, unit, options["unit"]) for value, unit in (options["low"], options["high"]))
@@ -160,7 +160,7 @@ def _flight(scenario: Scenario, options: Mapping[str, Any], report: Report) -> d
         raise ConfigError(f"the flight ended at its start: {flight.outcome.value}")
     report("drawing", 1.0)
     from tethership.explorer.plain import plain_figure
-    from tethership.view.interactive_histories import interactive_histories
+    from tethership.view.flight.interactive_histories import interactive_histories
 
     start = [f"The start is no equilibrium. {point.message}"] if point.saturated else []
     return {

@@ -1,6 +1,6 @@
 """A trim as a picture: the ship on its cables from the east and from above, and what its thrusters give.
 
-Depends on: plotly, view, system.
+Depends on: plotly, view, plant.
 """
 
 from typing import Any
@@ -14,14 +14,14 @@ from plotly.subplots import make_subplots
 
 from tethership.analysis import TrimPoint
 from tethership.explorer.plain import plain_figure
+from tethership.plant import State, TetheredAirship
 from tethership.scenario import Scenario
 from tethership.scenario.build_air import ground_level
 from tethership.spatial import rotation_matrix
-from tethership.system import State, TetheredAirship
 from tethership.view import style
-from tethership.view.projection import FROM_EAST, FROM_TOP, View
-from tethership.view.sampling import listed
-from tethership.view.ship import ship_outlines, ship_shape
+from tethership.view.flight.projection import FROM_EAST, FROM_TOP, View
+from tethership.view.flight.ship import ship_outlines, ship_shape
+from tethership.view.flight.thinning import listed
 
 CURVE_POINTS = 25
 

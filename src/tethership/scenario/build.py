@@ -1,4 +1,4 @@
-"""From a validated scenario to the plant. Depends on: system, physics, scenario.schema, scenario.build_ship.
+"""From a validated scenario to the plant. Depends on: plant, physics, scenario.schema, scenario.build_ship.
 
 Everything is written with jax.numpy, so that a plant can be differentiated with respect to its numbers.
 """
@@ -9,13 +9,13 @@ from jaxtyping import Array, Float
 
 from tethership.physics.cable import AbstractTensionLaw, CableLoad, ElasticCatenary, PublishedTension
 from tethership.physics.winch import Winch
+from tethership.plant import Cable, TetheredAirship
 from tethership.scenario.build_air import build_environment
 from tethership.scenario.build_ship import build_hull, build_ship, slice_integrals
 from tethership.scenario.schema import (
     CableConfig,
     ScenarioConfig,
 )
-from tethership.system import Cable, TetheredAirship
 
 __all__ = ["assemble", "build_environment", "build_hull", "build_ship", "build_system", "slice_integrals"]
 

@@ -1,4 +1,4 @@
-"""From a validated scenario to the air around the ship. Depends on: system, physics, scenario's tables.
+"""From a validated scenario to the air around the ship. Depends on: plant, physics, scenario's tables.
 
 Written with jax.numpy, as `scenario.build` is.
 """
@@ -19,6 +19,7 @@ from tethership.physics.turbulence import (
     make_turbulence,
 )
 from tethership.physics.wind import AbstractWind, LogarithmicWind, PowerLawWind, UniformWind
+from tethership.plant import Environment
 from tethership.scenario.schema import ConstantAir, ScenarioConfig
 from tethership.scenario.wind_schema import (
     AnyWindConfig,
@@ -29,7 +30,6 @@ from tethership.scenario.wind_schema import (
     TurbulenceConfig,
 )
 from tethership.spatial import STANDARD_GRAVITY, safe_norm
-from tethership.system import Environment
 
 
 def direction_from(azimuth: Float[Array, ""], upward: Float[Array, ""] | float = 0.0) -> Float[Array, "3"]:

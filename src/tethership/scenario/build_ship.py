@@ -1,4 +1,4 @@
-"""From a validated vehicle to the modules of the ship. Depends on: system, physics, scenario.vehicle_schema.
+"""From a validated vehicle to the modules of the ship. Depends on: plant, physics, scenario.vehicle_schema.
 
 Everything is written with jax.numpy, so that a ship can be differentiated with respect to its numbers.
 """
@@ -27,6 +27,7 @@ from tethership.physics.gravity import Gravity
 from tethership.physics.hull import BodyOfRevolution, Strips, ellipsoid, gertler, gertler_from_shape
 from tethership.physics.rigid_body import RigidBody
 from tethership.physics.thrusters import Thrusters
+from tethership.plant import Airship
 from tethership.scenario.vehicle_schema import (
     EllipsoidHull,
     GertlerHull,
@@ -34,7 +35,6 @@ from tethership.scenario.vehicle_schema import (
     LambConfig,
     VehicleConfig,
 )
-from tethership.system import Airship
 
 STRIPS = 16
 """Strips of the cross-flow drag, nose to l_h: 5e-12 of ∫2r, 3e-5 of ∫2r|x|³ with its kink at B."""

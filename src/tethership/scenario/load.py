@@ -13,6 +13,7 @@ from pydantic import ValidationError
 
 from tethership.control import LayeredLaw
 from tethership.errors import ConfigError, TethershipWarning, shown, suggestion
+from tethership.plant import TetheredAirship
 from tethership.scenario.build import assemble
 from tethership.scenario.changes import Document, change
 from tethership.scenario.control_schema import check_layers
@@ -24,7 +25,6 @@ from tethership.scenario.schema import ScenarioConfig
 from tethership.scenario.solver import SolverConfig
 from tethership.scenario.vehicle_schema import VehicleConfig
 from tethership.scenario.wind_file import expand_wind_file, take_wind_file
-from tethership.system import TetheredAirship
 
 ModelType = TypeVar("ModelType", bound=Table)
 

@@ -1,4 +1,4 @@
-"""What the parts, laws and files of a user may be called. Depends on: system.names, errors.
+"""What the parts, laws and files of a user may be called. Depends on: plant.names, errors.
 
 A name becomes part of a dotted name (`cables.nose.length`), of a file (`rewind_17.nc`) or of a label.
 """
@@ -10,7 +10,7 @@ from typing import Annotated
 from pydantic import AfterValidator
 
 from tethership.errors import shown
-from tethership.system.names import taken
+from tethership.plant.names import taken
 
 LONGEST = 60
 """Letters of a name."""

@@ -1,6 +1,6 @@
 """The closed loop: measurement → law → command → derivative, winches included.
 
-Depends on: system, control. The integrator's vector is (12 states, cable lengths, the law's memory).
+Depends on: plant, control. The integrator's vector is (12 states, cable lengths, the law's memory).
 """
 
 from typing import Any, NamedTuple
@@ -11,10 +11,10 @@ from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Float
 
 from tethership.control.law import AbstractLaw, Correction, Measurement
+from tethership.plant.plant import CableState, TetheredAirship
+from tethership.plant.ship import derivative
+from tethership.plant.state import Command, State
 from tethership.spatial import Wrench, rotation_matrix, safe_norm
-from tethership.system.airship import derivative
-from tethership.system.state import Command, State
-from tethership.system.tethered import CableState, TetheredAirship
 
 
 class Instant(NamedTuple):

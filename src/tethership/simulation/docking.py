@@ -15,6 +15,8 @@ from jaxtyping import Array, Float
 from tethership._version import __version__
 from tethership.control import AbstractLaw
 from tethership.errors import ConfigError, SolveError
+from tethership.plant import Command, State, TetheredAirship
+from tethership.plant.balance import DRIFT_LIMIT, drift, left_over, residual, residual_limit
 from tethership.results import store
 from tethership.scenario import Scenario, ScenarioConfig, SolverConfig, read_solver
 from tethership.scenario.load import from_document
@@ -24,8 +26,6 @@ from tethership.simulation.flight import Flight, Progress, fly
 from tethership.simulation.header import stored_solver
 from tethership.simulation.outcome import Outcome
 from tethership.spatial import rotation_matrix
-from tethership.system import Command, State, TetheredAirship
-from tethership.system.balance import DRIFT_LIMIT, drift, left_over, residual, residual_limit
 
 
 class Start(Protocol):

@@ -8,9 +8,9 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from tethership.plant.plant import end_tension
 from tethership.simulation.closed_loop import ClosedLoop
 from tethership.simulation.outcome import Outcome
-from tethership.system.tethered import end_tension
 
 MARGINS = (Outcome.docked, Outcome.cable_broken, Outcome.ground_contact, Outcome.attitude_singular)
 """Outcomes in the order of the margins."""

@@ -5,11 +5,11 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from tethership.errors import ConfigError, suggestion
+from tethership.plant.state import STATE_NAMES
 from tethership.scenario import SolverConfig
 from tethership.scenario.load import validated
 from tethership.scenario.quantity import SI_UNIT, Quantity
 from tethership.simulation.outcome import Outcome
-from tethership.system.state import STATE_NAMES
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 

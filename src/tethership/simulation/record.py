@@ -6,9 +6,9 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from tethership.control.heading import misalignment
+from tethership.plant.plant import Cable, CableState, end_tension
 from tethership.simulation.closed_loop import ClosedLoop, Instant
 from tethership.spatial import rotation_matrix, safe_norm
-from tethership.system.tethered import Cable, CableState, end_tension
 
 CURVE_POINTS = 17
 """Points of a cable that are kept."""

@@ -10,10 +10,10 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
 from tethership.control import misalignment
+from tethership.plant.plant import end_tension
 from tethership.simulation.cable_pace import LEAST_MASS, LEAST_TENSION, MEMORY, SLACK, TRUSTED, first_mode
 from tethership.simulation.closed_loop import ClosedLoop, Instant
 from tethership.spatial import safe_norm
-from tethership.system.tethered import end_tension
 
 
 class Signals(NamedTuple):

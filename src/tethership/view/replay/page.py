@@ -15,8 +15,8 @@ from tethership.errors import ConfigError
 from tethership.results.seal import RUN
 from tethership.simulation import Flight
 from tethership.view import style
-from tethership.view.page_file import page_text, write_page_text
 from tethership.view.replay.scene import scene
+from tethership.view.report.page_file import page_text, write_page_text
 
 SCRIPTS = (
     "tracks",

@@ -1,6 +1,6 @@
 """A flight as plain data that a page can hold: ship, cables, ground, limits, words, tracks.
 
-Depends on: view.hull_mesh, view.ship (the shape), view.replay.tracks, scenario, simulation.
+Depends on: view.flight.hull_mesh, view.flight.ship (the shape), view.replay.tracks, scenario, simulation.
 """
 
 from typing import Any
@@ -11,10 +11,10 @@ from tethership.errors import SolveError
 from tethership.scenario import ScenarioConfig
 from tethership.scenario.build_air import ground_level
 from tethership.simulation import Flight
-from tethership.view.hull_mesh import ship_mesh
+from tethership.view.flight.captions import compass, flown_words
+from tethership.view.flight.hull_mesh import ship_mesh
+from tethership.view.flight.ship import ship_shape
 from tethership.view.replay.tracks import COPIED, packed, packed_tracks, tracks
-from tethership.view.ship import ship_shape
-from tethership.view.words import compass, flown_words
 
 RINGS, SECTORS = 46, 40
 """Sections of the hull between nose and tail, and corners of each."""

@@ -1,4 +1,4 @@
-"""The histories of a flight for a replay: samples chosen, numbers packed. Depends on: view.sampling.
+"""The histories of a flight for a replay: samples chosen, numbers packed. Depends on: view.flight.thinning.
 
 A track is a history of one or more numbers at the chosen times, in single precision: 7 digits, far below what an eye
 sees, and half the size.
@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from tethership.errors import ConfigError
 from tethership.scenario import ScenarioConfig
+from tethership.view.flight.thinning import evenly, with_peaks
 from tethership.view.replay.derived import gusts, quaternions, rotations, thrusts
-from tethership.view.sampling import evenly, with_peaks
 
 Array = NDArray[np.float64]
 

@@ -1,0 +1,1 @@
+"""Identification of the paper's ship from its printed tables and spectra."""

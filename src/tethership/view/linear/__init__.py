@@ -1,0 +1,1 @@
+"""Pictures of linear models: root loci and mode shapes."""
