@@ -23,8 +23,8 @@ from tethership.campaign.execute import fly_campaign, in_processes, in_this_proc
 from tethership.campaign.flights import BATCH, Flyer
 from tethership.campaign.plan import Plan, make_plan
 from tethership.campaign.store import CampaignStore, open_results
+from tethership.plant.loop import ClosedLoop
 from tethership.scenario.laws import build_law
-from tethership.simulation.closed_loop import ClosedLoop
 from tethership.simulation.docking import start_state
 
 SAMPLES = 1000

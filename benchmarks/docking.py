@@ -16,8 +16,8 @@ import scipy.integrate
 
 import tethership as ts
 import tethership.simulation.flight as module
+from tethership.plant.loop import ClosedLoop
 from tethership.scenario import read_solver
-from tethership.simulation.closed_loop import ClosedLoop
 from tethership.simulation.docking import start_state
 
 LAYERS = {"rewind": ["rewind"], "heading": ["rewind", "heading"], "navigation": ["rewind", "heading", "navigation"]}

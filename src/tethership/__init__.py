@@ -59,7 +59,7 @@ if TYPE_CHECKING:
     from tethership.campaign import Campaign, open_results, run_campaign
     from tethership.control import AbstractLaw, Correction, Measurement
     from tethership.scenario import Scenario, list_packaged, list_parameters, load_scenario, scenario_at
-    from tethership.simulation import Flight, Outcome, dock, fly_again
+    from tethership.simulation import Flight, Outcome, Stop, dock, fly, fly_again
     from tethership.view import (
         interactive_root_locus,
         plot_campaign,
@@ -80,11 +80,13 @@ _HOMES = {
     "Modes": "analysis",
     "Outcome": "simulation",
     "Scenario": "scenario",
+    "Stop": "simulation",
     "Sensitivities": "analysis",
     "Sweep": "analysis",
     "TrimOutcome": "analysis",
     "TrimPoint": "analysis",
     "dock": "simulation",
+    "fly": "simulation",
     "fly_again": "simulation",
     "interactive_root_locus": "view",
     "linearize": "analysis",
@@ -137,6 +139,7 @@ __all__ = [
     "Scenario",
     "Sensitivities",
     "SolveError",
+    "Stop",
     "Sweep",
     "TethershipError",
     "TethershipWarning",
@@ -144,6 +147,7 @@ __all__ = [
     "TrimPoint",
     "__version__",
     "dock",
+    "fly",
     "fly_again",
     "interactive_root_locus",
     "linearize",

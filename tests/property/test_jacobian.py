@@ -15,7 +15,7 @@ from hypothesis.extra.numpy import arrays
 
 import tethership as ts
 from tethership.plant import Command, State
-from tethership.simulation.closed_loop import ClosedLoop
+from tethership.plant.loop import ClosedLoop
 from tethership.spatial import rotation_matrix
 
 BOTH = ("consistent", "published")

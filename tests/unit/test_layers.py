@@ -16,7 +16,7 @@ from jaxtyping import Array, Float
 import tethership as ts
 from tethership.control import AbstractLaw, Correction, LayeredLaw, Measurement
 from tethership.plant import Command, State
-from tethership.simulation.closed_loop import ClosedLoop
+from tethership.plant.loop import ClosedLoop
 from tethership.spatial import rotation_matrix
 
 LAYERS = ("rewind", "heading", "navigation")

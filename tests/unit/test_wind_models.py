@@ -8,9 +8,9 @@ import tethership as ts
 from tethership.errors import ConfigError
 from tethership.physics.gust import CosineGust
 from tethership.physics.wind import LogarithmicWind
+from tethership.plant.loop import ClosedLoop
 from tethership.plant.ship import wrenches
 from tethership.scenario.wind_file import record_warning
-from tethership.simulation.closed_loop import ClosedLoop
 
 LOGARITHMIC = {
     "wind": {

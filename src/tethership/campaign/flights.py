@@ -18,13 +18,14 @@ from jaxtyping import Array, Float
 from tethership.analysis.loci.continuation import nearby_equilibrium
 from tethership.analysis.trim.problem import Question, ask, pose
 from tethership.errors import ConfigError
+from tethership.plant.loop import ClosedLoop
 from tethership.scenario import Scenario, ScenarioConfig, list_parameters
 from tethership.scenario.build import build_system
-from tethership.scenario.laws import build_law
+from tethership.scenario.build_loop import build_loop
 from tethership.scenario.parameters import find_parameter, with_values
-from tethership.simulation.batch import STEP, differing, fly_lanes, hoisted, metrics_of
-from tethership.simulation.closed_loop import ClosedLoop
-from tethership.simulation.docking import moved_start, stop_conditions
+from tethership.simulation.batch import STEP, beats_of, differing, fly_lanes, hoisted, metrics_of
+from tethership.simulation.events import Stop
+from tethership.simulation.start import moved_start
 
 BATCH = 168
 """Flights of one compiled call: fixed, so that every campaign runs the same program."""
@@ -94,7 +95,7 @@ def _prepared(
         problem = pose(here, plant, question)
         found = nearby_equilibrium(problem, start)
         state, command = problem.unpack(found)
-        loop = ClosedLoop(plant, build_law(here), command)
+        loop = build_loop(here, plant, command)
         vector = loop.initial(moved_start(here, plant, state))
         return loop, vector, jnp.max(jnp.abs(problem.balance(found)))
 
@@ -146,6 +147,9 @@ class Flyer:
         unbreakable: bool = False,
     ) -> None:
         known = list_parameters(scenario.config)
+        _check_ticks(names)
+        self._names, self._longest = tuple(names), step
+        check_lags(scenario, step)
         parameters = [find_parameter(known, name, scenario.name) for name in names]
         self._places = tuple(parameter.places for parameter in parameters)
         flat = [place for group in self._places for place in group]
@@ -155,9 +159,10 @@ class Flyer:
         self._config = _unbreakable(config) if unbreakable else config
         self._question = ask(scenario)
         self._start = jnp.zeros(len(self._question.unknowns.effort))
-        self._stop = stop_conditions(scenario)
+        self._stop = Stop.docking(scenario).conditions()
         self._limits = jnp.asarray(scenario.config.watched_tensions())
-        self._time_limit, self._step = jnp.asarray(scenario.config.stop.time_limit), jnp.asarray(step)
+        self._time_limit = jnp.asarray(scenario.config.stop.time_limit)
+        self._beats = beats_of(step, scenario.config.control.period, scenario.config.control.delay)
         self.lanes = lanes
         self._differ = differing(self._prepare(_probe(example, lanes))[0])
 
@@ -167,13 +172,44 @@ class Flyer:
 
     def fly(self, values: np.ndarray) -> dict[str, np.ndarray]:
         """Return the metrics of at most `lanes` cases, values [SI] of shape (cases, names), as `fly_cases` does."""
+        for name, column in zip(self._names, values.T, strict=True):
+            if name.endswith(".lag"):
+                _check_lag(name, float(column.min()), self._longest)
         count = len(values)
         padded = np.concatenate([values, np.repeat(values[-1:], self.lanes - count, axis=0)])
         loops, vectors, left = self._prepare(padded)
         held, axes = hoisted(loops, self._differ)
-        result = _flown(held, axes, self._stop, self._limits, vectors, self._time_limit, self._step)
+        result = _flown(held, axes, self._stop, self._limits, vectors, self._time_limit, self._beats)
         found = {**metrics_of(result), "unbalanced": np.asarray(left)}
         return {name: array[:count] for name, array in found.items()}
+
+
+def _check_ticks(names: Sequence[str]) -> None:
+    """Raise ConfigError where the ticks of a sampled law differ between flights: a batch keeps one time for all."""
+    for name in names:
+        if name in ("control.period", "control.delay"):
+            raise ConfigError(
+                f"{name} cannot differ between the flights of a batch, which share their steps; fly a "
+                "campaign for each value"
+            )
+
+
+def check_lags(scenario: Scenario, step: float) -> None:
+    """Raise ConfigError where fixed steps h [s] cannot follow a lag of a scenario's actuators."""
+    vehicle = scenario.config.vehicle
+    for kind, rows in (("thrusters", vehicle.thrusters), ("fins", vehicle.fins)):
+        for row in rows:
+            if row.lag is not None:
+                _check_lag(f"vehicle.{kind}.{row.name}.lag", row.lag, step)
+
+
+def _check_lag(name: str, lag: float, step: float) -> None:
+    """Raise ConfigError where a step h [s] is longer than twice a lag τ [s]: Runge–Kutta's rule fails at 2.8."""
+    if lag < 0.5 * step:
+        raise ConfigError(
+            f"{name} = {lag:g} s is too short for the fixed steps of a batch, {step:g} s: give at least {0.5 * step:g} "
+            "s, or leave it out (an ideal actuator)"
+        )
 
 
 def _probe(example: np.ndarray, lanes: int) -> np.ndarray:

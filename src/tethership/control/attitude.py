@@ -6,9 +6,10 @@ Eq. 40 of Riboldi et al. As printed, the ratio of forward positions of #2 and #3
 the moment of #2; the text asks for two equal contributions, so its modulus is in the allocation.
 """
 
+import equinox as eqx
 from jaxtyping import Array, Float
 
-from tethership.control.law import AbstractLaw, Correction, Measurement
+from tethership.control.law import AbstractLaw, Correction, Measurement, deflected
 
 
 class AttitudeLaw(AbstractLaw):
@@ -24,6 +25,8 @@ class AttitudeLaw(AbstractLaw):
         φ̄, θ̄ [rad].
     roll_share, pitch_share, yaw_share : Float[Array, "thrusters"]
         Throttle of each thruster per unit of roll, pitch, yaw demand [-].
+    fin_shares : dict of str to Float[Array, "fins"]
+        Deflection of each fin per unit of demand [rad], by the name of the share, for those in which fins have a part.
     """
 
     roll_rate_gain: Float[Array, ""]
@@ -36,6 +39,7 @@ class AttitudeLaw(AbstractLaw):
     roll_share: Float[Array, "thrusters"]
     pitch_share: Float[Array, "thrusters"]
     yaw_share: Float[Array, "thrusters"]
+    fin_shares: dict[str, Float[Array, "fins"]] = eqx.field(default_factory=dict)
 
     def __call__(
         self, time: Float[Array, ""], measurement: Measurement, memory: tuple[()]
@@ -53,4 +57,5 @@ class AttitudeLaw(AbstractLaw):
         rolling = self.roll_rate_gain * roll_rate + self.roll_gain * (roll - self.roll_target)
         yawing = self.yaw_rate_gain * yaw_rate
         throttle = self.pitch_share * pitching + self.roll_share * rolling + self.yaw_share * yawing
-        return Correction(throttle=throttle), memory
+        turned = deflected(self.fin_shares, pitch_share=pitching, roll_share=rolling, yaw_share=yawing)
+        return Correction(throttle=throttle, deflection=turned), memory

@@ -5,10 +5,11 @@ References
 Eq. 42 of Riboldi et al.
 """
 
+import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from tethership.control.law import AbstractLaw, Correction, Measurement
+from tethership.control.law import AbstractLaw, Correction, Measurement, deflected
 from tethership.spatial import horizontal_unit, rotation_matrix, safe_norm
 
 
@@ -58,12 +59,15 @@ class HeadingLaw(AbstractLaw):
         tether point itself.
     fade_radius : float
         Horizontal distance to the anchor below which the law fades out linearly [m]; 0 for never.
+    fin_shares : dict of str to Float[Array, "fins"]
+        Deflection of each fin per unit of demand [rad], by the name of the share, for those in which fins have a part.
     """
 
     gain: Float[Array, ""]
     share: Float[Array, "thrusters"]
     fade_radius: Float[Array, ""]
     measured_behind: Float[Array, ""]
+    fin_shares: dict[str, Float[Array, "fins"]] = eqx.field(default_factory=dict)
 
     def angle(self, misaligned: Float[Array, ""]) -> Float[Array, ""]:
         """Return the angle the law acts on [rad] from χ [rad]: χ itself, −π … π."""
@@ -84,7 +88,8 @@ class HeadingLaw(AbstractLaw):
         fading = self.fade_radius > 0
         distance = safe_norm(offset[:2])
         weight = jnp.where(fading, jnp.minimum(distance / jnp.where(fading, self.fade_radius, 1.0), 1.0), 1.0)
-        return Correction(throttle=self.share * self.gain * weight * angle), memory
+        turned = deflected(self.fin_shares, share=self.gain * weight * angle)
+        return Correction(throttle=self.share * self.gain * weight * angle, deflection=turned), memory
 
 
 class SineHeadingLaw(HeadingLaw):

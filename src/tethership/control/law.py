@@ -6,6 +6,7 @@ gains as fields and one method.
 """
 
 import abc
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -58,11 +59,42 @@ class Correction(NamedTuple):
         Δ deflection of the fins [rad].
     rewind_rate : Float[Array, "cables"] or float
         ΔΨ, added to the winch's default rate [m/s].
+    channels : mapping of str to Float[Array, ""]
+        Δ of single channels by name: a thruster's throttle [-], a fin's deflection [rad].
+    demands : mapping of str to Float[Array, ""]
+        Demands by name [-], which the scenario's allocation shares out among the channels.
     """
 
     throttle: Float[Array, "thrusters"] | float = 0.0
     deflection: Float[Array, "fins"] | float = 0.0
     rewind_rate: Float[Array, "cables"] | float = 0.0
+    channels: Mapping[str, Any] = {}
+    demands: Mapping[str, Any] = {}
+
+    def plus(self, other: "Correction") -> "Correction":
+        """Return the sum of two corrections."""
+        return Correction(
+            self.throttle + other.throttle,
+            self.deflection + other.deflection,
+            self.rewind_rate + other.rewind_rate,
+            _summed(self.channels, other.channels),
+            _summed(self.demands, other.demands),
+        )
+
+    def times(self, weight: Float[Array, ""]) -> "Correction":
+        """Return the correction times a number [-]."""
+        return Correction(
+            self.throttle * weight,
+            self.deflection * weight,
+            self.rewind_rate * weight,
+            {name: value * weight for name, value in self.channels.items()},
+            {name: value * weight for name, value in self.demands.items()},
+        )
+
+
+def _summed(first: Mapping[str, Any], second: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the sums by name."""
+    return {**first, **{name: first.get(name, 0.0) + value for name, value in second.items()}}
 
 
 class AbstractLaw(eqx.Module):
@@ -86,6 +118,12 @@ class AbstractLaw(eqx.Module):
         """Return the memory at the start; nothing, unless a law says otherwise."""
         del measurement
         return ()
+
+
+def deflected(shares: Mapping[str, Float[Array, "fins"]], **demands: Float[Array, ""]) -> Float[Array, "fins"] | float:
+    """Return the deflections of all fins [rad] that share in demands, each by the name of its share; 0 for none."""
+    parts = [shares[name] * demand for name, demand in demands.items() if name in shares]
+    return sum(parts[1:], parts[0]) if parts else 0.0
 
 
 def clip(value: Float[Array, ""], limit: Float[Array, ""]) -> Float[Array, ""]:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import equinox as eqx
+import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from tethership.control.law import AbstractLaw, Correction, Measurement
@@ -18,25 +19,32 @@ class LayeredLaw(AbstractLaw):
         What acts.
     names : tuple of str
         Their names, in the same order.
+    switches : Float[Array, "laws"], optional
+        1 for each law that acts, 0 for one that does not [-]: one compiled program then flies every set of layers. All
+        act where none are given.
     """
 
     laws: tuple[AbstractLaw, ...]
     names: tuple[str, ...] = eqx.field(static=True)
+    switches: Float[Array, "laws"] | None = None
 
     def __call__(
         self, time: Float[Array, ""], measurement: Measurement, memory: tuple[Any, ...]
     ) -> tuple[Correction, tuple[Any, ...]]:
         """Return the sum of all corrections and every law's memory rate; arguments as in `AbstractLaw`."""
         total, rates = Correction(), []
-        for law, own in zip(self.laws, memory, strict=True):
+        for i, (law, own) in enumerate(zip(self.laws, memory, strict=True)):
             correction, rate = law(time, measurement, own)
-            total = Correction(*(a + b for a, b in zip(total, correction, strict=True)))
+            total = total.plus(correction if self.switches is None else correction.times(self.switches[i]))
             rates.append(rate)
         return total, tuple(rates)
 
     def joined(self, others: Mapping[str, AbstractLaw]) -> "LayeredLaw":
         """Return these laws with more of them, by name."""
-        return LayeredLaw((*self.laws, *others.values()), (*self.names, *others))
+        switches = self.switches
+        if switches is not None:
+            switches = jnp.concatenate([switches, jnp.ones(len(others))])
+        return LayeredLaw((*self.laws, *others.values()), (*self.names, *others), switches)
 
     def initial_memory(self, measurement: Measurement) -> tuple[Any, ...]:
         """Return the memories of all laws."""

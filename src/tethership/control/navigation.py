@@ -6,10 +6,11 @@ Eq. 43 of Riboldi et al., with the index sets of the text and the sign of the sp
 plus is anti-damping).
 """
 
+import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from tethership.control.law import AbstractLaw, Correction, Measurement, clip
+from tethership.control.law import AbstractLaw, Correction, Measurement, clip, deflected
 from tethership.spatial import horizontal_unit, rotation_matrix, safe_norm
 
 
@@ -31,6 +32,8 @@ class NavigationLaw(AbstractLaw):
         Bounds of the set-points max|Ū|, max|RoC̄| [m/s].
     forward_share, vertical_share : Float[Array, "thrusters"]
         Throttle of each thruster per unit of forward and downward demand [-].
+    fin_shares : dict of str to Float[Array, "fins"]
+        Deflection of each fin per unit of demand [rad], by the name of the share, for those in which fins have a part.
     """
 
     position_gain: Float[Array, ""]
@@ -42,6 +45,7 @@ class NavigationLaw(AbstractLaw):
     largest_climb: Float[Array, ""]
     forward_share: Float[Array, "thrusters"]
     vertical_share: Float[Array, "thrusters"]
+    fin_shares: dict[str, Float[Array, "fins"]] = eqx.field(default_factory=dict)
 
     def ahead(self, offset: Float[Array, "3"], nose: Float[Array, "2"]) -> Float[Array, ""]:
         """Return ε_hor [m] from the tether point's offset [m] and the nose's horizontal unit vector, ground axes."""
@@ -66,7 +70,9 @@ class NavigationLaw(AbstractLaw):
         climb = clip(self.speed_slope * below, self.largest_climb)
         forward = -self.position_gain * ahead - self.speed_gain * (measurement.velocity[0] - speed)
         downward = -self.vertical_gain * below + self.climb_gain * (measurement.rate_of_climb - climb)
-        return Correction(throttle=self.forward_share * forward + self.vertical_share * downward), memory
+        turned = deflected(self.fin_shares, forward_share=forward, vertical_share=downward)
+        throttle = self.forward_share * forward + self.vertical_share * downward
+        return Correction(throttle=throttle, deflection=turned), memory
 
 
 class LineOfSightNavigationLaw(NavigationLaw):

@@ -31,13 +31,13 @@ HEIGHT = 330
 @eqx.filter_jit
 def _curves(plant: TetheredAirship, state: State) -> Float[Array, "cables 25 3"]:
     """Return the cables at a state, anchor first [m]."""
-    plant = plant.in_mean_air()
+    plant = plant.at_mean()
     lengths = plant.initial_lengths()
     states = plant.cable_states(jnp.zeros(()), state, lengths)
     rows = []
     for index, (cable, now) in enumerate(zip(plant.cables, states, strict=True)):
         arc = jnp.linspace(0.0, 1.0, CURVE_POINTS) * lengths[index]
-        rows.append(cable.anchor + cable.law.shape(now.span, lengths[index], now.load, arc))
+        rows.append(now.place + cable.law.shape(now.span, lengths[index], now.load, arc))
     return jnp.stack(rows) if rows else jnp.zeros((0, CURVE_POINTS, 3))
 
 

@@ -1,17 +1,26 @@
-"""The plant: state, ship, air, cables; named loads and the derivative of the state."""
+"""The plant of parts: ship, air, cables, actuators, a law; named loads, all states and their derivative."""
 
 from tethership.plant.environment import Air, Environment
+from tethership.plant.instant import Instant
+from tethership.plant.layout import Layout
+from tethership.plant.loop import ClosedLoop
+from tethership.plant.names import PartNames
 from tethership.plant.plant import Cable, CableState, TetheredAirship
 from tethership.plant.ship import Airship, derivative, wrenches
-from tethership.plant.state import Command, State
+from tethership.plant.state import Command, PlantState, State
 
 __all__ = [
     "Air",
     "Airship",
     "Cable",
     "CableState",
+    "ClosedLoop",
     "Command",
     "Environment",
+    "Instant",
+    "Layout",
+    "PartNames",
+    "PlantState",
     "State",
     "TetheredAirship",
     "derivative",

@@ -33,7 +33,7 @@ def residual(plant: TetheredAirship, state: State, command: Command) -> Float[Ar
     Parameters
     ----------
     plant : TetheredAirship
-        In mean air (`in_mean_air`) where an equilibrium is meant.
+        At its mean (`at_mean`) where an equilibrium is meant.
     state : State
         Of the ship.
     command : Command
@@ -46,11 +46,13 @@ def residual(plant: TetheredAirship, state: State, command: Command) -> Float[Ar
 
 
 def drift(plant: TetheredAirship, state: State) -> Float[Array, "motions"]:
-    """Return the rates of what must stand still: Euler angles [rad/s] and, on a cable, x_P in ground axes [m/s]."""
+    """Return the rates of what must stand still: Euler angles [rad/s] and, on a cable, x_P beside the anchor [m/s]."""
     turning = euler_rates(state.attitude, state.rates)
     if not plant.cables:
         return turning
-    return jnp.concatenate([turning, rotation_matrix(state.attitude) @ state.velocity])
+    moving = rotation_matrix(state.attitude) @ state.velocity
+    drawn = plant.anchor_velocity()
+    return jnp.concatenate([turning, moving if drawn is None else moving - drawn])
 
 
 def residual_limit(plant: TetheredAirship) -> Float[Array, ""]:

@@ -1,17 +1,21 @@
 """Ship and cables together: one more named load per cable. Depends on: physics, plant."""
 
 import dataclasses
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from tethership.physics.actuators import Actuators
+from tethership.physics.anchor import AbstractAnchorMotion, HarmonicMotion, SteadyMotion
 from tethership.physics.cable import AbstractTensionLaw, CableLoad
 from tethership.physics.winch import Winch
 from tethership.plant.environment import Environment
+from tethership.plant.names import PartNames
 from tethership.plant.ship import Airship, derivative, wrenches
-from tethership.plant.state import Command, State
+from tethership.plant.state import ActuatorState, Command, State
 from tethership.spatial import Wrench, rotation_matrix, safe_norm
 
 
@@ -28,12 +32,15 @@ class CableState(NamedTuple):
         Force of the cable on the anchor [N].
     load : Float[Array, "3"]
         Load per unit length l [N/m].
+    place : Float[Array, "3"]
+        Where the anchor is x_AP [m].
     """
 
     span: Float[Array, "3"]
     ship: Float[Array, "3"]
     anchor: Float[Array, "3"]
     load: Float[Array, "3"]
+    place: Float[Array, "3"]
 
 
 class Cable(eqx.Module):
@@ -44,7 +51,7 @@ class Cable(eqx.Module):
     tether_point : Float[Array, "3"]
         TP from P, body axes, q_TP [m].
     anchor : Float[Array, "3"]
-        x_AP, ground axes [m].
+        x_AP, ground axes [m]; where it moves, the place that it moves about or from.
     length : float
         Unstretched length at the start L_t [m].
     breaking_force : float
@@ -58,6 +65,8 @@ class Cable(eqx.Module):
     load_reference : float
         Where the reference point C of the cable's wind load sits, as a fraction of the span from the anchor [-]; ½ is
         the mid-point.
+    motion : AbstractAnchorMotion, optional
+        Of the anchor; none for one that stands still.
     """
 
     tether_point: Float[Array, "3"]
@@ -68,6 +77,7 @@ class Cable(eqx.Module):
     law: AbstractTensionLaw
     winch: Winch
     load_reference: Float[Array, ""]
+    motion: AbstractAnchorMotion | None = None
 
     def state(
         self, time: Float[Array, ""], state: State, length: Float[Array, ""], environment: Environment
@@ -84,13 +94,16 @@ class Cable(eqx.Module):
             Present unstretched length L_t [m].
         environment : Environment
             Wind and density at the reference point C of Eqs. 15–18; on the chord between the ends C moves at its
-            fraction of the velocity of TP, the anchor being at rest.
+            fraction of the velocity of TP and the rest of that of the anchor.
         """
         rotation = rotation_matrix(state.attitude)
-        span = state.position + rotation @ self.tether_point - self.anchor
+        place, drawn = self.anchor, None
+        if self.motion is not None:
+            place, drawn = place + self.motion.displacement(time), self.motion.velocity(time)
+        span = state.position + rotation @ self.tether_point - place
         velocity = rotation @ (state.velocity + jnp.cross(state.rates, self.tether_point))
-        wind = environment.wind_at(self.anchor + self.load_reference * span, time)
-        return self.between(span, velocity, length, wind, environment)
+        wind = environment.wind_at(place + self.load_reference * span, time)
+        return self.between(span, velocity, length, wind, environment, place, drawn)
 
     def between(
         self,
@@ -99,6 +112,8 @@ class Cable(eqx.Module):
         length: Float[Array, ""],
         wind: Float[Array, "3"],
         environment: Environment,
+        place: Float[Array, "3"] | None = None,
+        drawn: Float[Array, "3"] | None = None,
     ) -> CableState:
         """Return the cable's forces between two points, ground axes.
 
@@ -114,11 +129,17 @@ class Cable(eqx.Module):
             Wind at C [m/s].
         environment : Environment
             Gives the density there.
+        place, drawn : Float[Array, "3"], optional
+            Where an anchor is that moves [m], and its velocity [m/s]; the cable's own place, at rest, if not given.
         """
-        density = environment.density_at(self.anchor + self.load_reference * span)
-        load = self.load.per_length(density, self.load_reference * velocity - wind, span)
+        place = self.anchor if place is None else place
+        density = environment.density_at(place + self.load_reference * span)
+        along = self.load_reference * velocity
+        if drawn is not None:
+            along = along + (1.0 - self.load_reference) * drawn
+        load = self.load.per_length(density, along - wind, span)
         force = self.law.force(span, length, load)
-        return CableState(span, force.ship, force.anchor, load)
+        return CableState(span, force.ship, force.anchor, load, place)
 
     def lowest_point(self, cable: CableState, length: Float[Array, ""]) -> Float[Array, "3"]:
         """Return the lowest point of the cable, ground axes [m]; arguments as `state` returns them.
@@ -130,7 +151,7 @@ class Cable(eqx.Module):
         down = cable.load[2]
         level = cable.anchor[2] / jnp.where(jnp.abs(down) > 0, down, 1.0)
         arc = jnp.stack([jnp.zeros_like(length), jnp.clip(level, 0.0, length), length])
-        points = self.anchor + self.law.shape(cable.span, length, cable.load, arc)
+        points = cable.place + self.law.shape(cable.span, length, cable.load, arc)
         return points[jnp.argmax(points[:, 2])]
 
 
@@ -142,11 +163,41 @@ class TetheredAirship(eqx.Module):
     ship : Airship
     environment : Environment
     cables : tuple of Cable
+    thrusters, surfaces : Actuators
+        What throttles and deflections do with what they are asked.
+    names : PartNames
+        Names of thrusters, fins and cables; numbered where none are given.
     """
 
     ship: Airship
     environment: Environment
     cables: tuple[Cable, ...]
+    thrusters: Actuators = eqx.field(default_factory=Actuators.ideal)
+    surfaces: Actuators = eqx.field(default_factory=Actuators.ideal)
+    names: PartNames | None = eqx.field(static=True, default=None)
+
+    @property
+    def part_names(self) -> PartNames:
+        """Names of thrusters, fins and cables."""
+        if self.names is not None:
+            return self.names
+        return PartNames.numbered(self.ship.thrusters.count, self.ship.fins.count, len(self.cables))
+
+    def actuated(self, own: ActuatorState, asked: Command) -> Command:
+        """Return what the actuated channels do, for their states and what they are asked."""
+        return Command(
+            self.thrusters.output(own.thrusters, asked.throttle), self.surfaces.output(own.surfaces, asked.deflection)
+        )
+
+    def actuators_at_rest(self, asked: Command) -> ActuatorState:
+        """Return the states of the actuated channels that have done what they are asked."""
+        return ActuatorState(self.thrusters.rest(asked.throttle), self.surfaces.rest(asked.deflection))
+
+    def actuator_rates(self, own: ActuatorState, asked: Command) -> ActuatorState:
+        """Return the rates of these states [1/s, rad/s]."""
+        return ActuatorState(
+            self.thrusters.rate(own.thrusters, asked.throttle), self.surfaces.rate(own.surfaces, asked.deflection)
+        )
 
     def cable_states(
         self, time: Float[Array, ""], state: State, lengths: Float[Array, "cables"]
@@ -180,15 +231,47 @@ class TetheredAirship(eqx.Module):
         loads = self.wrenches(time, state, command, self.cable_states(time, state, lengths))
         return derivative(state, loads, self.ship, self.environment)
 
-    def in_mean_air(self) -> "TetheredAirship":
-        """Return the plant without turbulence and the like: the one that has an equilibrium."""
-        return dataclasses.replace(self, environment=self.environment.without_fluctuations())
+    def at_mean(self) -> "TetheredAirship":
+        """Return the plant in mean air, its anchors about their places: the one that has an equilibrium."""
+        swinging = [i for i, cable in enumerate(self.cables) if isinstance(cable.motion, HarmonicMotion)]
+        cables = tuple(
+            dataclasses.replace(cable, motion=None) if i in swinging else cable for i, cable in enumerate(self.cables)
+        )
+        return dataclasses.replace(self, environment=self.environment.without_fluctuations(), cables=cables)
+
+    def anchor_velocity(self) -> Float[Array, "3"] | None:
+        """Return the velocity over the ground of anchors that are under way [m/s]; None where they stand still."""
+        under_way = [c.motion.mean_velocity() for c in self.cables if isinstance(c.motion, SteadyMotion)]
+        return under_way[0] if under_way else None
 
     def initial_lengths(self) -> Float[Array, "cables"]:
         """Return the unstretched lengths at the start [m]."""
         if not self.cables:
             return jnp.zeros(0)
         return jnp.stack([cable.length for cable in self.cables])
+
+
+_LOADS: dict[Any, tuple[str, ...]] = {}
+
+
+def load_names(plant: TetheredAirship) -> tuple[str, ...]:
+    """Return the names of all loads on the ship, by asking for the loads once for each structure of a plant."""
+    structure = jax.tree.structure(plant)
+    if structure not in _LOADS:
+        found: list[str] = []
+
+        def asked() -> Any:
+            now, state = jnp.zeros(()), State.at_rest(jnp.zeros(3))
+            ship = plant.ship
+            command = Command(jnp.zeros(ship.thrusters.count), jnp.zeros(ship.fins.count))
+            cables = plant.cable_states(now, state, plant.initial_lengths())
+            loads = plant.wrenches(now, state, command, cables)
+            found.extend(loads)
+            return loads
+
+        jax.eval_shape(asked)
+        _LOADS[structure] = tuple(found)
+    return _LOADS[structure]
 
 
 def end_tension(cable: CableState) -> Float[Array, ""]:

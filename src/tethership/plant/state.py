@@ -1,4 +1,6 @@
-"""State of the ship and command to it, as types. Depends on: spatial."""
+"""States of the plant and command to it, as types. Depends on nothing."""
+
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -68,3 +70,40 @@ class Command(eqx.Module):
 
     throttle: Float[Array, "thrusters"]
     deflection: Float[Array, "fins"]
+
+
+class ActuatorState(NamedTuple):
+    """States of the actuated channels that lag.
+
+    Attributes
+    ----------
+    thrusters : Float[Array, "slow"]
+        Throttle that each of them has reached [-].
+    surfaces : Float[Array, "slow"]
+        Deflection that each of them has reached [rad].
+    """
+
+    thrusters: Float[Array, "slow"]
+    surfaces: Float[Array, "slow"]
+
+
+class PlantState(NamedTuple):
+    """States of all parts of a plant under a law; a part without any has an empty place.
+
+    Attributes
+    ----------
+    ship : State
+    lengths : Float[Array, "cables"]
+        Unstretched length of each cable L_t [m], the state of its winch.
+    actuators : ActuatorState
+    law : Any
+        The law's memory.
+    held : Any
+        What a sampled law holds (`control.sampling.Held`); empty for a continuous one.
+    """
+
+    ship: State
+    lengths: Float[Array, "cables"]
+    actuators: ActuatorState
+    law: Any
+    held: Any

@@ -34,6 +34,7 @@ ATTRIBUTES: dict[str, str] = {
     "scenario_name": "packaged name or file",
     "scenario": "the scenario as read, vehicle and changes included",
     "solver": "settings of the integrator",
+    "stop": "what was to end it: time limit [s], docking length [m] or none, pitch [rad], ground; winches on or off",
     "trim": "trimmed state, throttles and deflections",
     "versions": "of this package and those it computes with",
 }

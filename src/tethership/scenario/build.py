@@ -7,14 +7,19 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from tethership.physics.anchor import AbstractAnchorMotion, HarmonicMotion, SteadyMotion
 from tethership.physics.cable import AbstractTensionLaw, CableLoad, ElasticCatenary, PublishedTension
 from tethership.physics.winch import Winch
 from tethership.plant import Cable, TetheredAirship
+from tethership.plant.names import PartNames
 from tethership.scenario.build_air import build_environment
-from tethership.scenario.build_ship import build_hull, build_ship, slice_integrals
+from tethership.scenario.build_ship import build_actuators, build_hull, build_ship, slice_integrals
 from tethership.scenario.schema import (
+    AnchorMotionConfig,
     CableConfig,
+    HarmonicMotionConfig,
     ScenarioConfig,
+    SteadyMotionConfig,
 )
 
 __all__ = ["assemble", "build_environment", "build_hull", "build_ship", "build_system", "slice_integrals"]
@@ -40,6 +45,7 @@ def _cable(config: CableConfig, formulation: str, shift: Float[Array, "3"]) -> C
         law=law,
         winch=Winch(jnp.asarray(config.winch.rewind_rate), jnp.asarray(config.winch.fastest_rate)),
         load_reference=jnp.asarray(config.load_reference),
+        motion=_motion(config.anchor_motion),
     )
 
 
@@ -50,7 +56,27 @@ def build_system(config: ScenarioConfig, reference_point: Float[Array, "3"] | No
         ship=build_ship(config.vehicle, config.formulation, shift),
         environment=build_environment(config),
         cables=tuple(_cable(cable, config.formulation, shift) for cable in config.cables),
+        thrusters=build_actuators(config.vehicle.thrusters),
+        surfaces=build_actuators(config.vehicle.fins),
+        names=part_names(config),
     )
+
+
+def part_names(config: ScenarioConfig) -> PartNames:
+    """Return the names of thrusters, fins and cables."""
+    parts = (config.vehicle.thrusters, config.vehicle.fins, config.cables)
+    return PartNames(*(tuple(part.name for part in group) for group in parts))
+
+
+def _motion(config: AnchorMotionConfig | None) -> AbstractAnchorMotion | None:
+    """Return how an anchor moves; None where it stands still."""
+    match config:
+        case None:
+            return None
+        case SteadyMotionConfig():
+            return SteadyMotion(jnp.asarray(config.velocity))
+        case HarmonicMotionConfig():
+            return HarmonicMotion(*map(jnp.asarray, (config.amplitude, config.period, config.phase)))
 
 
 @eqx.filter_jit

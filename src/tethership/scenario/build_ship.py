@@ -3,11 +3,13 @@
 Everything is written with jax.numpy, so that a ship can be differentiated with respect to its numbers.
 """
 
+from collections.abc import Sequence
 from functools import partial
 
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from tethership.physics.actuators import QUICK, Actuators
 from tethership.physics.apparent_mass import (
     AbstractApparentMass,
     KirchhoffApparentMass,
@@ -30,9 +32,11 @@ from tethership.physics.thrusters import Thrusters
 from tethership.plant import Airship
 from tethership.scenario.vehicle_schema import (
     EllipsoidHull,
+    FinConfig,
     GertlerHull,
     HullConfig,
     LambConfig,
+    ThrusterConfig,
     VehicleConfig,
 )
 
@@ -170,6 +174,19 @@ def build_thrusters(config: VehicleConfig, shift: Float[Array, "3"]) -> Thruster
         nominal=_column(rows, "nominal_thrust"),
         lowest_throttle=jnp.asarray([-1.0 if row.reversible else 0.0 for row in rows], dtype=float),
         lapse=jnp.asarray(lapse, dtype=float),
+    )
+
+
+def build_actuators(rows: Sequence[ThrusterConfig] | Sequence[FinConfig]) -> Actuators:
+    """Return what the channels of a vehicle do with what they are asked; one without lag and limit has no state."""
+    slow = [i for i, row in enumerate(rows) if row.lag is not None or row.rate_limit is not None]
+    bands = {i: band for i, row in enumerate(rows) if (band := getattr(row, "dead_band", None)) is not None}
+    return Actuators(
+        lag=jnp.asarray([QUICK if (lag := rows[i].lag) is None else lag for i in slow], dtype=float),
+        rate_limit=jnp.asarray([jnp.inf if (most := rows[i].rate_limit) is None else most for i in slow], dtype=float),
+        dead_band=jnp.asarray(list(bands.values()), dtype=float),
+        slow=tuple(slow),
+        banded=tuple(bands),
     )
 
 

@@ -3,10 +3,10 @@
 Depends on: scenario.quantity.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Annotated, Literal
 
-from pydantic import Field, field_validator
+from pydantic import Field, field_validator, model_validator
 
 from tethership.errors import suggestion
 from tethership.scenario.quantity import Quantity, Table
@@ -86,11 +86,18 @@ class ControlConfig(Table):
 
     With `gain_thrust` given, gains command thrust in multiples of it, not throttle: each thruster's throttle is then
     its share times gain_thrust over its own nominal thrust.
+
+    With `period` given, the laws look once a period and what they ask is held until the next time (zero-order hold);
+    with `delay` it takes effect so much later (computing time, at most a period). Without, they are continuous.
+    `allocation` shares demands of one's own laws out among thrusters [-] and fins [rad], by name.
     """
 
     layers: tuple[str, ...] = ()
     sas: bool = True
     gain_thrust: Annotated[float, Quantity("N", positive=True)] | None = None
+    period: Annotated[float, Quantity("s", positive=True)] | None = None
+    delay: Annotated[float, Quantity("s", low=0.0)] | None = None
+    allocation: dict[str, Share] = Field(default_factory=dict)
     attitude: AttitudeConfig = AttitudeConfig()
     rewind: RewindConfig = RewindConfig()
     heading: HeadingConfig = HeadingConfig()
@@ -101,13 +108,38 @@ class ControlConfig(Table):
     def _known_layers(cls, names: tuple[str, ...]) -> tuple[str, ...]:
         return check_layers(names)
 
-    def check_thrusters(self, known: Sequence[str]) -> None:
-        """Raise ValueError if a share names a thruster that the vehicle does not have."""
+    @field_validator("delay")
+    @classmethod
+    def _none(cls, value: float | None) -> float | None:
+        return value or None  # zero is what is left out
+
+    @model_validator(mode="after")
+    def _in_time(self) -> "ControlConfig":
+        if self.delay is not None and (self.period is None or self.delay > self.period):
+            within = "needs a period" if self.period is None else f"is beyond control.period {self.period:g} s"
+            raise ValueError(f"delay {self.delay:g} s {within}; give a period at least as long")
+        return self
+
+    def check_period(self, time_limit: float) -> None:
+        """Raise ValueError if a law would look only once in a flight of so many seconds."""
+        if self.period is not None and self.period > time_limit:
+            raise ValueError(
+                f"control.period {self.period:g} s is longer than the flight, stop.time_limit {time_limit:g} s; "
+                "give a shorter period"
+            )
+
+    def shares(self) -> Iterator[tuple[str, Share]]:
+        """Return all shares with their dotted names under `control`."""
         for law in ("attitude", "heading", "navigation"):
-            for key, share in getattr(self, law):
-                for name in share if isinstance(share, dict) else ():
-                    if name not in known:
-                        raise ValueError(
-                            f"control.{law}.{key} names the thruster {name!r}, which the vehicle does not have"
-                            f"{suggestion(name, known)} It has: {', '.join(known) or 'none; remove the shares'}"
-                        )
+            yield from ((f"{law}.{key}", share) for key, share in getattr(self, law) if isinstance(share, dict))
+        yield from ((f"allocation.{demand}", share) for demand, share in self.allocation.items())
+
+    def check_channels(self, known: Sequence[str]) -> None:
+        """Raise ValueError if a share names a thruster or fin that the vehicle does not have."""
+        for key, share in self.shares():
+            for name in share:
+                if name not in known:
+                    raise ValueError(
+                        f"control.{key} names the thruster {name!r}, which the vehicle does not have"
+                        f"{suggestion(name, known)} It has: {', '.join(known) or 'none; remove the shares'}"
+                    )

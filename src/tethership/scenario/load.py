@@ -65,7 +65,7 @@ class Scenario:
         """What reading a measured wind left out, bridged or guessed, a line each."""
         return getattr(self.config.wind, "remarks", ())
 
-    def law(self, layers: Iterable[str] | None = None, sas: bool | None = None) -> LayeredLaw:
+    def law(self, layers: Iterable[str] | None = None, sas: bool | None = None, switched: bool = False) -> LayeredLaw:
         """Return the layered law.
 
         Parameters
@@ -74,6 +74,8 @@ class Scenario:
             Instead of the scenario's own.
         sas : bool, optional
             SAS/attitude on or off instead of the scenario's own.
+        switched : bool
+            All laws, with a switch for each, as in `build_law`.
 
         Raises
         ------
@@ -88,7 +90,7 @@ class Scenario:
         if names and not self.config.cables:
             raise ConfigError(f"layers {', '.join(names)} need a cable, and {self.name} has none; use --layers none")
         chosen = control.model_copy(update={"layers": names, "sas": control.sas if sas is None else sas})
-        return build_law(self.config.model_copy(update={"control": chosen}))
+        return build_law(self.config.model_copy(update={"control": chosen}), switched)
 
     def changed(self, changes: Mapping[str, Any]) -> "Scenario":
         """Return the scenario with values changed; see `load_scenario`."""

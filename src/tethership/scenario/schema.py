@@ -57,6 +57,33 @@ class WinchConfig(Table):
         return self
 
 
+class SteadyMotionConfig(Table):
+    """An anchor under way at constant velocity over the ground: a truck, a ship. It keeps its height."""
+
+    model: Literal["steady"]
+    velocity: Annotated[Vector, Quantity("m/s", depth=1)]
+
+    @model_validator(mode="after")
+    def _level(self) -> "SteadyMotionConfig":
+        if self.velocity[2] != 0.0:
+            raise ValueError(
+                f"velocity has {self.velocity[2]:g} m/s down; an anchor under way keeps its height: give 0"
+            )
+        return self
+
+
+class HarmonicMotionConfig(Table):
+    """An anchor that swings about its place: amplitude · sin(2π t/period + phase). A ship is trimmed on its place."""
+
+    model: Literal["harmonic"]
+    amplitude: Point
+    period: Seconds
+    phase: Angle = 0.0
+
+
+AnchorMotionConfig = Annotated[SteadyMotionConfig | HarmonicMotionConfig, Field(discriminator="model")]
+
+
 class CableConfig(Table):
     """One cable; `tether_point` from the origin of the body axes, `anchor` in ground axes.
 
@@ -76,6 +103,7 @@ class CableConfig(Table):
     cross_flow_drag_coefficient: Annotated[float, Quantity("1", low=0.0)]
     longitudinal_drag_coefficient: Annotated[float, Quantity("1", low=0.0)]
     load_reference: Annotated[float, Quantity("1", low=0.0, high=1.0)] = 0.5
+    anchor_motion: AnchorMotionConfig | None = None
     winch: WinchConfig
 
     @model_validator(mode="after")
@@ -164,7 +192,14 @@ class ScenarioConfig(Table):
             raise ValueError(
                 f"limits.cable_break {given:g} N is not the breaking_force {weakest:g} N; leave it out of limits"
             )
-        self.control.check_thrusters([t.name for t in self.vehicle.thrusters])
+        self.control.check_channels([part.name for part in (*self.vehicle.thrusters, *self.vehicle.fins)])
+        under_way = {
+            cable.anchor_motion.velocity if isinstance(cable.anchor_motion, SteadyMotionConfig) else (0.0, 0.0, 0.0)
+            for cable in self.cables
+        }
+        if len(under_way) > 1:
+            raise ValueError("cables: anchors under way must all have the same velocity; give each the same")
+        self.control.check_period(self.stop.time_limit)
         if not self.cables and set(self.control.layers) & {"rewind", "heading", "navigation"}:
             raise ValueError(f"layers {list(self.control.layers)} need a cable, and there is none")
         return self

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 import jax.numpy as jnp
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from tethership.physics.fins import USUAL_DEFLECTION
 from tethership.physics.hull import gertler_from_shape
@@ -15,6 +15,7 @@ Length = Annotated[float, Quantity("m", positive=True, sourced=True)]
 Position = Annotated[Vector, Quantity("m", depth=1, sourced=True)]
 Number = Annotated[float, Quantity("1", sourced=True)]
 Positive = Annotated[float, Quantity("1", positive=True, sourced=True)]
+Lag = Annotated[float, Quantity("s", low=0.0, high=60.0, sourced=True)]
 NotNegative = Annotated[float, Quantity("1", low=0.0, sourced=True)]
 
 
@@ -132,7 +133,11 @@ class EnvelopeConfig(Table):
 
 
 class FinConfig(Table):
-    """One fin; roll angle 0 is starboard, 90° down."""
+    """One fin; roll angle 0 is starboard, 90° down.
+
+    Its deflection follows what it is asked within `largest_deflection`, at most at `rate_limit`, with a first-order lag
+    of time constant `lag`; what is left out is ideal.
+    """
 
     name: Part
     roll: Annotated[float, Quantity("rad", sourced=True)]
@@ -145,10 +150,21 @@ class FinConfig(Table):
     cross_flow_station: Annotated[float, Quantity("m", sourced=True)]
     distance_from_axis: Annotated[float, Quantity("m", low=0.0, sourced=True)]
     largest_deflection: Annotated[float, Quantity("rad", low=0.0, high=1.5708, sourced=True)] = USUAL_DEFLECTION
+    lag: Lag | None = None
+    rate_limit: Annotated[float, Quantity("rad/s", positive=True, sourced=True)] | None = None
+
+    @field_validator("lag")
+    @classmethod
+    def _none(cls, value: float | None) -> float | None:
+        return value or None  # zero is what is left out: an ideal actuator has no state
 
 
 class ThrusterConfig(Table):
-    """One thruster."""
+    """One thruster.
+
+    Its throttle is what it is asked, clipped, zero below `dead_band`, followed at most at `rate_limit` [full throttle
+    per second] with a first-order lag of time constant `lag`; what is left out is ideal.
+    """
 
     name: Part
     position: Position
@@ -156,6 +172,14 @@ class ThrusterConfig(Table):
     nominal_thrust: Annotated[float, Quantity("N", positive=True, sourced=True)]
     reversible: bool
     speed_of_no_thrust: Annotated[float, Quantity("m/s", positive=True, sourced=True)] | None = None
+    lag: Lag | None = None
+    rate_limit: Annotated[float, Quantity("1/s", positive=True, sourced=True)] | None = None
+    dead_band: Annotated[float, Quantity("1", low=0.0, high=0.99, sourced=True)] | None = None
+
+    @field_validator("lag", "dead_band")
+    @classmethod
+    def _none(cls, value: float | None) -> float | None:
+        return value or None  # zero is what is left out: an ideal actuator has no state
 
     @model_validator(mode="after")
     def _unit_direction(self) -> "ThrusterConfig":

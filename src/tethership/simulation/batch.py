@@ -5,6 +5,7 @@ hull's shape or the anchors' places are read once for all. Every flight ends by 
 the batch goes on until three of four have ended, then the rest go on without them.
 """
 
+import math
 from typing import NamedTuple
 
 import equinox as eqx
@@ -13,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
-from tethership.simulation.closed_loop import ClosedLoop
+from tethership.plant.loop import ClosedLoop
 from tethership.simulation.events import MARGINS, StopConditions
 from tethership.simulation.outcome import Outcome
 from tethership.simulation.tally import Signals, Tally, add, begin, signals
@@ -30,6 +31,43 @@ WIDE = 96
 
 CODES = (*MARGINS, Outcome.time_limit, Outcome.diverged)
 """Outcomes by the number that a batch gives."""
+
+
+class Beat(NamedTuple):
+    """One step, or the steps of a period of a sampled law, one after the other.
+
+    Attributes
+    ----------
+    step : Float[Array, "..."]
+        h [s].
+    looks, acts : Bool[Array, "..."]
+        What a sampled law does at its start; where it does both, it acts first.
+    """
+
+    step: Float[Array, "..."]
+    looks: Bool[Array, "..."]
+    acts: Bool[Array, "..."]
+
+
+def beats_of(step: float, period: float | None = None, delay: float | None = None) -> Beat:
+    """Return the steps of a batch: all alike, or such that a sampled law's ticks fall between two of them.
+
+    Parameters
+    ----------
+    step : float
+        Longest step h [s].
+    period, delay : float, optional
+        T and d of a sampled law [s].
+    """
+    if period is None:
+        no = jnp.zeros(1, dtype=bool)
+        return Beat(jnp.full(1, step), no, no)
+    cut = delay if delay is not None and delay < period else 0.0
+    counts = [math.ceil(part / step - 1e-9) for part in (cut, period - cut)]
+    steps = [part / count for part, count in zip((cut, period - cut), counts, strict=True) for _ in range(count)]
+    place = jnp.arange(sum(counts))
+    acts = (place == counts[0]) if delay is not None else jnp.zeros(sum(counts), dtype=bool)
+    return Beat(jnp.asarray(steps), place == 0, acts)
 
 
 class Lane(NamedTuple):
@@ -82,6 +120,22 @@ def _look(
     return loop.rate(now), stop.margins(loop, time, vector), signals(loop, now)
 
 
+def _ticked(loop: ClosedLoop, time: Float[Array, ""], lane: Lane, beat: Beat) -> Lane:
+    """Return a lane after what a sampled law does at the start of a step."""
+    if loop.sampling is None:
+        return lane
+
+    def jumped() -> tuple[Array, Array]:
+        vector = lane.vector
+        if loop.sampling is not None and loop.sampling.delay is not None:
+            vector = jnp.where(beat.acts, loop.act(vector), vector)
+        vector = jnp.where(beat.looks, loop.look(time, vector), vector)
+        return vector, loop.vector_field(time, vector)
+
+    vector, slope = jax.lax.cond(beat.acts | beat.looks, jumped, lambda: (lane.vector, lane.slope))
+    return lane._replace(vector=vector, slope=slope)
+
+
 def _advanced(loop: ClosedLoop, time: Float[Array, ""], lane: Lane, step: Float[Array, ""]) -> Float[Array, "n"]:
     """Return the vector a step h [s] on: classical Runge–Kutta of order 4, its first stage known."""
     half = 0.5 * step
@@ -97,10 +151,12 @@ def _stepped(
     limits: Float[Array, "limits"],
     time: Float[Array, ""],
     lane: Lane,
-    step: Float[Array, ""],
+    beat: Beat,
 ) -> Lane:
     """Return a lane one step on; one that has ended stays as it is."""
-    vector = _advanced(loop, time, lane, step)
+    step = beat.step
+    begun = _ticked(loop, time, lane, beat)
+    vector = _advanced(loop, time, begun, step)
     slope, margins, now = _look(loop, stop, time + step, vector)
     finite = jnp.all(jnp.isfinite(vector)) & jnp.all(jnp.isfinite(slope))
     worst = jnp.argmin(margins)
@@ -137,7 +193,7 @@ def fly_lanes(
     limits: Float[Array, "limits"],
     vectors: Float[Array, "n flights"],
     time_limit: Float[Array, ""],
-    step: Float[Array, ""],
+    rhythm: Beat,
 ) -> BatchResult:
     """Fly a batch to its end; to be compiled by the caller.
 
@@ -155,21 +211,28 @@ def fly_lanes(
         Starts.
     time_limit : Float[Array, ""]
         [s].
-    step : Float[Array, ""]
-        h [s].
+    rhythm : Beat
+        The steps, over and over again, shape (beats,).
     """
     lanes = jax.vmap(_started, in_axes=(axes, None, None, -1), out_axes=-1)(loops, stop, limits, vectors)
     advance = jax.vmap(_stepped, in_axes=(axes, None, None, None, -1, None), out_axes=-1)
+    beats = len(rhythm.step)
+    starts = jnp.cumsum(rhythm.step) - rhythm.step
+    bar = jnp.sum(rhythm.step)
+
+    def time_of(count: Int[Array, ""]) -> Float[Array, ""]:
+        return (count // beats) * bar + starts[count % beats]
 
     def onward(loops: ClosedLoop, count: Int[Array, ""], lanes: Lane, fewest: int) -> tuple[Int[Array, ""], Lane]:
         """Fly from a number of steps on until no more than so many flights are under way, or the time is up."""
 
         def unfinished(carry: tuple[Array, Lane]) -> Array:
-            return (jnp.sum(carry[1].active) > fewest) & (carry[0] * step < time_limit - 1e-9)
+            return (jnp.sum(carry[1].active) > fewest) & (time_of(carry[0]) < time_limit - 1e-9)
 
         def forward(carry: tuple[Array, Lane]) -> tuple[Array, Lane]:
             count, now = carry
-            return count + 1, advance(loops, stop, limits, count * step, now, step)
+            beat = jax.tree.map(lambda part: part[count % beats], rhythm)
+            return count + 1, advance(loops, stop, limits, time_of(count), now, beat)
 
         return jax.lax.while_loop(unfinished, forward, (count, lanes))
 

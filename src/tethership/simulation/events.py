@@ -1,19 +1,71 @@
-"""What ends a flight, as margins that are positive while it goes on. Depends on: simulation.closed_loop.
+"""What ends a flight, as margins that are positive while it goes on. Depends on: plant.loop.
 
 One event function, the least of the margins, is given to the integrator: with several events its bisection may lock
 on the wrong one; with one the root is always bracketed. Which margin ended the flight is read off afterwards.
 """
 
+import dataclasses
+import math
+
 import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from tethership.errors import ConfigError
+from tethership.plant.loop import ClosedLoop
 from tethership.plant.plant import end_tension
-from tethership.simulation.closed_loop import ClosedLoop
+from tethership.scenario import Scenario
 from tethership.simulation.outcome import Outcome
 
 MARGINS = (Outcome.docked, Outcome.cable_broken, Outcome.ground_contact, Outcome.attitude_singular)
 """Outcomes in the order of the margins."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Stop:
+    """What ends a flight besides a broken cable.
+
+    Attributes
+    ----------
+    time_limit : float
+        Longest flight [s].
+    cable_length : float or None
+        Unstretched length at which a ship is docked [m]; None where it is not to dock.
+    largest_pitch : float
+        Largest |θ| [rad].
+    ground_contact : bool
+        Whether touching the ground ends the flight.
+    """
+
+    time_limit: float
+    cable_length: float | None = None
+    largest_pitch: float = 1.3962634015954636
+    ground_contact: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("time_limit", "cable_length", "largest_pitch"):
+            value = getattr(self, name)
+            if value is not None and not (math.isfinite(value) and value > 0):
+                raise ConfigError(f"stop: {name} is {value}; it must be a number above 0")
+
+    @classmethod
+    def of(cls, scenario: Scenario, stop: "Stop | float | None") -> "Stop":
+        """Return what ends a flight of a scenario: as given, after so many seconds, or at the scenario's time limit."""
+        if isinstance(stop, Stop):
+            return stop
+        own = scenario.config.stop
+        limit = own.time_limit if stop is None else float(stop)
+        return cls(limit, None, own.largest_pitch, scenario.config.ground.anchor_height is not None)
+
+    @classmethod
+    def docking(cls, scenario: Scenario) -> "Stop":
+        """Return what ends the docking manoeuvre of a scenario."""
+        return dataclasses.replace(cls.of(scenario, None), cable_length=scenario.config.stop.cable_length)
+
+    def conditions(self) -> "StopConditions":
+        """Return the same as the compiled program sees it."""
+        docked = -math.inf if self.cable_length is None else self.cable_length
+        return StopConditions(jnp.asarray(docked), jnp.asarray(self.largest_pitch), self.ground_contact)
 
 
 class StopConditions(eqx.Module):
@@ -22,7 +74,7 @@ class StopConditions(eqx.Module):
     Attributes
     ----------
     cable_length : float
-        Unstretched length at which a ship counts as docked [m].
+        Unstretched length at which a ship counts as docked [m]; −inf where it is not to dock.
     largest_pitch : float
         Largest |θ| [rad].
     ground_contact : bool
@@ -40,7 +92,8 @@ class StopConditions(eqx.Module):
         -----
         Length left over the docking length, 1 − T/F_b at the worse end, clearance [m], |θ|_max − |θ| [rad].
         """
-        state, lengths, _ = loop.unpack(vector)
+        now = loop.unpack(vector)
+        state, lengths = now.ship, now.lengths
         never = jnp.asarray(jnp.inf)
         docked = broken = never
         if loop.plant.cables:

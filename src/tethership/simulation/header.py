@@ -24,6 +24,18 @@ class StoredTrim(BaseModel):
     deflection: list[Number]
 
 
+class StoredStop(BaseModel):
+    """What was to end a flight, as `simulation.events.Stop` has it, and whether the winches took in cable."""
+
+    model_config = ConfigDict(strict=True)
+
+    time_limit: Annotated[float, Field(gt=0, allow_inf_nan=False)]
+    cable_length: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None
+    largest_pitch: Annotated[float, Field(gt=0, allow_inf_nan=False)]
+    ground_contact: bool
+    rewind: bool
+
+
 class FlightHeader(BaseModel):
     """Attributes of a flight; their meanings are in `results.schema.ATTRIBUTES`.
 
@@ -42,6 +54,7 @@ class FlightHeader(BaseModel):
     scenario_name: str
     scenario: dict[str, Any]
     solver: dict[str, Any]
+    stop: StoredStop | None = None
     trim: StoredTrim
     versions: dict[str, str]
 

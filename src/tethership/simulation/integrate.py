@@ -14,8 +14,8 @@ import jax.numpy as jnp
 import optimistix
 from jaxtyping import Array, Bool, Float, Int
 
+from tethership.plant.loop import ClosedLoop
 from tethership.scenario.solver import SolverConfig
-from tethership.simulation.closed_loop import ClosedLoop
 from tethership.simulation.events import StopConditions
 from tethership.simulation.record import record
 
@@ -129,7 +129,7 @@ Field = Callable[[Float[Array, ""], Float[Array, "n"]], Array]
 """A function of time and the integrator's vector."""
 
 
-def _traced(loop: ClosedLoop, stop: StopConditions, time: Array, vector: Array) -> tuple[Field, Field]:
+def least_traced(loop: ClosedLoop, stop: StopConditions, time: Array, vector: Array) -> tuple[Field, Field]:
     """Return vector field and least margin, traced once (the integrator would trace them at every use).
 
     Notes
@@ -150,6 +150,68 @@ def _traced(loop: ClosedLoop, stop: StopConditions, time: Array, vector: Array) 
     return (
         apart(loop.vector_field, lambda t, y: jnp.full_like(y, jnp.nan)),
         apart(lambda t, y: stop.least(loop, t, y), lambda t, y: jnp.full_like(t, jnp.nan)),
+    )
+
+
+class Solution(NamedTuple):
+    """What the integrator returns for one interval.
+
+    Attributes
+    ----------
+    reached : Float[Array, ""]
+        Time reached [s].
+    final : Float[Array, "n"]
+        Vector there.
+    stopped : Bool[Array, ""]
+        Whether a stop condition was met.
+    steps : Int[Array, ""]
+        Steps taken, rejected ones included.
+    evaluate : callable
+        The vector at a time between [s].
+    """
+
+    reached: Float[Array, ""]
+    final: Float[Array, "n"]
+    stopped: Bool[Array, ""]
+    steps: Int[Array, ""]
+    evaluate: Callable[[Array], Array]
+
+
+def solved(
+    field: Field,
+    margin: Field,
+    stepping: Stepping,
+    corners: Float[Array, "n"],
+    start: Float[Array, ""],
+    vector: Float[Array, "n"],
+    end: Float[Array, ""],
+) -> Solution:
+    """Integrate from one time to another, or until the margin vanishes or the budget of one call is spent."""
+    solution = diffrax.diffeqsolve(
+        diffrax.ODETerm(lambda t, y, _: field(jnp.asarray(t), y)),
+        METHODS[stepping.method](),
+        start,
+        end,
+        jnp.minimum(FIRST_STEP, stepping.largest_step) if stepping.adaptive else stepping.largest_step,
+        vector,
+        saveat=diffrax.SaveAt(t1=True, dense=True),
+        stepsize_controller=_controller(stepping, corners),
+        event=diffrax.Event(
+            lambda t, y, args, **_: margin(jnp.asarray(t), y),
+            optimistix.Bisection(rtol=1e-12, atol=1e-10),
+        ),
+        max_steps=SEGMENT_STEPS,
+        adjoint=diffrax.ForwardMode(),
+        throw=False,
+    )
+    assert solution.ts is not None
+    assert solution.ys is not None
+    return Solution(
+        solution.ts[-1],
+        solution.ys[-1],
+        solution.result == diffrax.RESULTS.event_occurred,
+        jnp.asarray(solution.stats["num_steps"]),
+        solution.evaluate,
     )
 
 
@@ -180,37 +242,19 @@ def fly_segment(
     sample_times : Float[Array, "samples"]
         When to sample [s].
     """
-    field, margin = _traced(loop, stop, start, vector)
-    solution = diffrax.diffeqsolve(
-        diffrax.ODETerm(lambda t, y, _: field(jnp.asarray(t), y)),
-        METHODS[stepping.method](),
-        start,
-        end,
-        jnp.minimum(FIRST_STEP, stepping.largest_step) if stepping.adaptive else stepping.largest_step,
-        vector,
-        saveat=diffrax.SaveAt(t1=True, dense=True),
-        stepsize_controller=_controller(stepping, loop.plant.environment.corner_times()),
-        event=diffrax.Event(
-            lambda t, y, args, **_: margin(jnp.asarray(t), y),
-            optimistix.Bisection(rtol=1e-12, atol=1e-10),
-        ),
-        max_steps=SEGMENT_STEPS,
-        adjoint=diffrax.ForwardMode(),
-        throw=False,
-    )
-    assert solution.ts is not None
-    assert solution.ys is not None
-    reached, final = solution.ts[-1], solution.ys[-1]
+    field, margin = least_traced(loop, stop, start, vector)
+    solution = solved(field, margin, stepping, loop.plant.environment.corner_times(), start, vector, end)
+    reached, final = solution.reached, solution.final
     samples = jax.vmap(lambda t: solution.evaluate(jnp.clip(t, start, reached)))(sample_times)
     samples = jnp.where((sample_times <= start)[:, None], vector, samples)
     outputs = jax.vmap(lambda t, y: record(loop, t, y))(sample_times, samples)
     return Segment(
         time=reached,
         vector=final,
-        stopped=solution.result == diffrax.RESULTS.event_occurred,
+        stopped=solution.stopped,
         finite=jnp.all(jnp.isfinite(final)) & jnp.isfinite(reached),
         margins=stop.margins(loop, reached, final),
-        steps=jnp.asarray(solution.stats["num_steps"]),
+        steps=solution.steps,
         sample_times=sample_times,
         samples=outputs,
         last=record(loop, reached, final),

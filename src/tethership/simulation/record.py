@@ -1,4 +1,4 @@
-"""What is kept of a flight at one instant, by the names of `results.schema`. Depends on: simulation.closed_loop."""
+"""What is kept of a flight at one instant, by the names of `results.schema`. Depends on: plant.loop."""
 
 from collections.abc import Callable
 
@@ -6,8 +6,9 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from tethership.control.heading import misalignment
+from tethership.plant.instant import Instant
+from tethership.plant.loop import ClosedLoop
 from tethership.plant.plant import Cable, CableState, end_tension
-from tethership.simulation.closed_loop import ClosedLoop, Instant
 from tethership.spatial import rotation_matrix, safe_norm
 
 CURVE_POINTS = 17
@@ -67,7 +68,7 @@ def _cables(loop: ClosedLoop, now: Instant) -> dict[str, Array]:
 
     def curve(cable: Cable, state: CableState, length: Array) -> Array:
         arc = jnp.linspace(0.0, 1.0, CURVE_POINTS) * length
-        return cable.anchor + cable.law.shape(state.span, length, state.load, arc)
+        return state.place + cable.law.shape(state.span, length, state.load, arc)
 
     curves = each(curve, CURVE_POINTS, 3)
     distance = each(lambda c, s, length: safe_norm(s.span))

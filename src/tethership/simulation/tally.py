@@ -1,6 +1,6 @@
 """Metrics of Tables 3–6 summed up while a flight is flown, so that a batch keeps no samples.
 
-Depends on: simulation.closed_loop, control, physics by their results. The definitions are those of `results.metrics`,
+Depends on: plant.loop, control, physics by their results. The definitions are those of `results.metrics`,
 which reads them off a flight's samples, and of `simulation.quasi_static`; tests hold them against each other.
 """
 
@@ -10,9 +10,10 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
 from tethership.control import misalignment
+from tethership.plant.instant import Instant
+from tethership.plant.loop import ClosedLoop
 from tethership.plant.plant import end_tension
 from tethership.simulation.cable_pace import LEAST_MASS, LEAST_TENSION, MEMORY, SLACK, TRUSTED, first_mode
-from tethership.simulation.closed_loop import ClosedLoop, Instant
 from tethership.spatial import safe_norm
 
 

@@ -94,7 +94,7 @@ def pose(config: ScenarioConfig, plant: TetheredAirship, question: Question) -> 
         aside = _downwind(place[:2], plant.cables[0].anchor[:2], into_wind)
         place = place.at[:2].set(jnp.where(turned, aside, place[:2]))
     base = _given(base.at[9:12].set(place), question)
-    return Problem(plant.in_mean_air(), base, question.unknowns, question.hold)
+    return Problem(plant.at_mean(), base, question.unknowns, question.hold)
 
 
 @eqx.filter_jit

@@ -1,0 +1,125 @@
+"""Where a flight starts: a trimmed point, checked against the scenario that is flown, with its attitude moved.
+
+Depends on: plant, scenario.
+"""
+
+from typing import Any, Protocol
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from tethership.errors import ConfigError
+from tethership.plant import ClosedLoop, Command, State, TetheredAirship
+from tethership.plant.balance import DRIFT_LIMIT, drift, left_over, residual, residual_limit
+from tethership.scenario import Scenario, ScenarioConfig
+from tethership.simulation.events import StopConditions
+from tethership.spatial import rotation_matrix
+
+
+class Start(Protocol):
+    """A trimmed point: what a flight starts from."""
+
+    @property
+    def state(self) -> State:
+        """State of the ship at trim."""
+        ...
+
+    @property
+    def command(self) -> Command:
+        """Trimmed throttles and deflections."""
+        ...
+
+
+def start_state(scenario: Scenario, trimmed: State) -> State:
+    """Return the state in which the flight begins: trim with its attitude moved.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Says by how much (`start.attitude_offset`) and which point stays in place (`start.hold`).
+    trimmed : State
+        State at trim.
+    """
+    return _moved(scenario.config.as_arrays(), scenario.system, trimmed)
+
+
+def moved_start(config: ScenarioConfig, plant: TetheredAirship, trimmed: State) -> State:
+    """Return `start_state` of a configuration and its plant; can be traced."""
+    start = config.start
+    held = plant.cables[0].tether_point if start.hold == "tether_point" and plant.cables else jnp.zeros(3)
+    attitude = trimmed.attitude + jnp.asarray(start.attitude_offset)
+    moved = (rotation_matrix(trimmed.attitude) - rotation_matrix(attitude)) @ held
+    return State(trimmed.velocity, trimmed.rates, attitude, trimmed.position + moved)
+
+
+_moved = eqx.filter_jit(moved_start)
+
+
+@eqx.filter_jit
+def begin(loop: ClosedLoop, stop: StopConditions, state: State) -> tuple[Array, Array]:
+    """Return the integrator's vector at the start, and the margins there."""
+    vector = loop.initial(state)
+    return vector, stop.margins(loop, jnp.zeros(()), vector)
+
+
+@eqx.filter_jit
+def _balance(plant: TetheredAirship, state: State, command: Command) -> tuple[Array, Array]:
+    """Return what a point leaves over in the mean air of a plant [N, N m], and the rates of what must stand still."""
+    return residual(plant.at_mean(), state, command), drift(plant, state)
+
+
+def check_point(scenario: Scenario, point: Start) -> None:
+    """Raise ConfigError where a point is no equilibrium of the scenario: trimmed for another one, say.
+
+    Notes
+    -----
+    Ten times what a trim may leave: a stored or continued point may differ from one found anew by its rounding.
+    """
+    left, moving = (np.asarray(part) for part in _balance(scenario.system, point.state, point.command))
+    limit = 10.0 * float(residual_limit(scenario.system))
+    worst = max(np.abs(left).max() / limit, np.abs(moving).max() / (10.0 * DRIFT_LIMIT))
+    if not worst <= 1.0:
+        raise ConfigError(
+            f"dock: the point is no equilibrium of this scenario: {left_over(left, moving, limit)} left over; was it "
+            "trimmed for another wind or ship? Give trim(scenario) of the scenario that is flown"
+        )
+
+
+def check_start(margins: Float[Array, "4"]) -> None:
+    """Raise ConfigError where the flight would be over before it begins."""
+    docked, broken, contact, pitch = np.asarray(margins)
+    if broken <= 0:
+        raise ConfigError(
+            f"the start is beyond breaking: a cable is at {1 - broken:.2f} of its breaking force; lengthen the cable "
+            "or lower trim.elongation or start.attitude_offset"
+        )
+    if docked <= 0:
+        raise ConfigError("the start is docked already: cables.length must be above stop.cable_length")
+    if contact <= 0:
+        raise ConfigError(
+            f"the start has the hull {-contact:.2f} m below ground: raise ground.anchor_height (a higher mast), or "
+            "start higher (trim.elevation, trim.elongation, a smaller start.attitude_offset)"
+        )
+    if pitch <= 0:
+        raise ConfigError("the start is beyond stop.largest_pitch; lower start.attitude_offset")
+
+
+def point_numbers(point: Start) -> dict[str, Any]:
+    """Return a trimmed point as plain numbers, which JSON keeps bit for bit."""
+    return {
+        "state": np.asarray(point.state.as_vector()).tolist(),
+        "throttle": np.asarray(point.command.throttle).tolist(),
+        "deflection": np.asarray(point.command.deflection).tolist(),
+    }
+
+
+class StoredStart:
+    """A trimmed point read from a flight file."""
+
+    def __init__(self, numbers: dict[str, Any]) -> None:
+        self.state = State.from_vector(jnp.asarray(numbers["state"]))
+        self.command = Command(
+            jnp.asarray(numbers["throttle"], dtype=float), jnp.asarray(numbers["deflection"], dtype=float)
+        )
