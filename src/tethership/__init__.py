@@ -57,7 +57,7 @@ if TYPE_CHECKING:
         trim,
     )
     from tethership.campaign import Campaign, open_results, run_campaign
-    from tethership.control import AbstractLaw, Correction, Measurement
+    from tethership.control import AbstractLaw, Correction, Measurement, Request
     from tethership.scenario import Scenario, list_packaged, list_parameters, load_scenario, scenario_at
     from tethership.simulation import Flight, Outcome, Stop, dock, fly, fly_again
     from tethership.view import (
@@ -79,6 +79,7 @@ _HOMES = {
     "Measurement": "control",
     "Modes": "analysis",
     "Outcome": "simulation",
+    "Request": "control",
     "Scenario": "scenario",
     "Stop": "simulation",
     "Sensitivities": "analysis",
@@ -136,6 +137,7 @@ __all__ = [
     "Measurement",
     "Modes",
     "Outcome",
+    "Request",
     "Scenario",
     "Sensitivities",
     "SolveError",

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
@@ -59,37 +60,49 @@ class Correction(NamedTuple):
         Δ deflection of the fins [rad].
     rewind_rate : Float[Array, "cables"] or float
         ΔΨ, added to the winch's default rate [m/s].
-    channels : mapping of str to Float[Array, ""]
-        Δ of single channels by name: a thruster's throttle [-], a fin's deflection [rad].
-    demands : mapping of str to Float[Array, ""]
-        Demands by name [-], which the scenario's allocation shares out among the channels.
     """
 
     throttle: Float[Array, "thrusters"] | float = 0.0
     deflection: Float[Array, "fins"] | float = 0.0
     rewind_rate: Float[Array, "cables"] | float = 0.0
+
+
+class Request(NamedTuple):
+    """What a law asks by name; it may return this instead of a correction.
+
+    Attributes
+    ----------
+    channels : mapping of str to Float[Array, ""]
+        Δ of single channels: a thruster's throttle [-], a fin's deflection [rad].
+    demands : mapping of str to Float[Array, ""]
+        Demands [-], which the scenario's allocation shares out among the channels.
+    correction : Correction
+        What is asked besides, in the order of the parts.
+    """
+
     channels: Mapping[str, Any] = {}
     demands: Mapping[str, Any] = {}
+    correction: Correction = Correction()
 
-    def plus(self, other: "Correction") -> "Correction":
-        """Return the sum of two corrections."""
-        return Correction(
-            self.throttle + other.throttle,
-            self.deflection + other.deflection,
-            self.rewind_rate + other.rewind_rate,
-            _summed(self.channels, other.channels),
-            _summed(self.demands, other.demands),
-        )
 
-    def times(self, weight: Float[Array, ""]) -> "Correction":
-        """Return the correction times a number [-]."""
-        return Correction(
-            self.throttle * weight,
-            self.deflection * weight,
-            self.rewind_rate * weight,
-            {name: value * weight for name, value in self.channels.items()},
-            {name: value * weight for name, value in self.demands.items()},
-        )
+Asked = Correction | Request
+
+
+def added(first: Asked, second: Asked) -> Asked:
+    """Return the sum of what two laws ask."""
+    if isinstance(first, Correction) and isinstance(second, Correction):
+        return Correction(*(a + b for a, b in zip(first, second, strict=True)))
+    one, other = (asked if isinstance(asked, Request) else Request({}, {}, asked) for asked in (first, second))
+    return Request(
+        _summed(one.channels, other.channels),
+        _summed(one.demands, other.demands),
+        Correction(*(a + b for a, b in zip(one.correction, other.correction, strict=True))),
+    )
+
+
+def switched(asked: Asked, switch: Float[Array, ""]) -> Asked:
+    """Return what a law asks times a switch [-], 0 or 1."""
+    return jax.tree.map(lambda part: part * switch, asked)
 
 
 def _summed(first: Mapping[str, Any], second: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -101,8 +114,8 @@ class AbstractLaw(eqx.Module):
     """A control law."""
 
     @abc.abstractmethod
-    def __call__(self, time: Float[Array, ""], measurement: Measurement, memory: Any) -> tuple[Correction, Any]:
-        """Return the correction and the time derivative of the memory.
+    def __call__(self, time: Float[Array, ""], measurement: Measurement, memory: Any) -> tuple[Asked, Any]:
+        """Return the correction (or what is asked by name) and the time derivative of the memory.
 
         Parameters
         ----------

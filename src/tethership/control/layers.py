@@ -7,7 +7,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from tethership.control.law import AbstractLaw, Correction, Measurement
+from tethership.control.law import AbstractLaw, Asked, Correction, Measurement, added, switched
 
 
 class LayeredLaw(AbstractLaw):
@@ -30,12 +30,13 @@ class LayeredLaw(AbstractLaw):
 
     def __call__(
         self, time: Float[Array, ""], measurement: Measurement, memory: tuple[Any, ...]
-    ) -> tuple[Correction, tuple[Any, ...]]:
+    ) -> tuple[Asked, tuple[Any, ...]]:
         """Return the sum of all corrections and every law's memory rate; arguments as in `AbstractLaw`."""
-        total, rates = Correction(), []
+        total: Asked = Correction()
+        rates = []
         for i, (law, own) in enumerate(zip(self.laws, memory, strict=True)):
             correction, rate = law(time, measurement, own)
-            total = total.plus(correction if self.switches is None else correction.times(self.switches[i]))
+            total = added(total, correction if self.switches is None else switched(correction, self.switches[i]))
             rates.append(rate)
         return total, tuple(rates)
 

@@ -14,7 +14,7 @@ import jax.numpy as jnp
 from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Float
 
-from tethership.control.law import AbstractLaw, Correction, Measurement
+from tethership.control.law import AbstractLaw, Asked, Correction, Measurement
 from tethership.control.sampling import Held, Sampling
 from tethership.errors import ConfigError, suggestion
 from tethership.plant.instant import Instant
@@ -96,29 +96,31 @@ class ClosedLoop(eqx.Module):
             rewind_rate=jnp.stack([c.winch.default_rate for c in self.plant.cables]) if count else jnp.zeros(0),
         )
 
-    def allocated(self, correction: Correction) -> Correction:
-        """Return a correction with its named channels and demands shared out to throttles and deflections.
+    def allocated(self, asked: Asked) -> Correction:
+        """Return what a law asks, its named channels and demands shared out to throttles and deflections.
 
         Raises
         ------
         ConfigError
             A law asks for a channel or a demand that is not there; the nearest is offered.
         """
-        throttle, deflection = correction.throttle, correction.deflection
-        for name, demand in correction.demands.items():
+        if isinstance(asked, Correction):
+            return asked
+        throttle, deflection, rewind_rate = asked.correction
+        for name, demand in asked.demands.items():
             share = _known(self.allocation, name, "demand", "name it in control.allocation")
             throttle = throttle + share.throttle * demand
             deflection = deflection + share.deflection * demand
         names = self.plant.part_names
         places = {name: i for i, name in enumerate(names.channels)}
-        for name, change in correction.channels.items():
+        for name, change in asked.channels.items():
             place = _known(places, name, "channel", "take one of these")
             if place < len(names.thrusters):
                 throttle = jnp.zeros_like(self.trimmed.throttle).at[place].set(change) + throttle
             else:
                 here = place - len(names.thrusters)
                 deflection = jnp.zeros_like(self.trimmed.deflection).at[here].set(change) + deflection
-        return Correction(throttle, deflection, correction.rewind_rate)
+        return Correction(throttle, deflection, rewind_rate)
 
     def _asked(self, correction: Correction) -> Command:
         """Return what the channels are asked, before clipping."""
@@ -139,8 +141,8 @@ class ClosedLoop(eqx.Module):
         cables = self.plant.cable_states(time, now.ship, now.lengths)
         measurement = self.measure(now.ship, now.lengths, cables)
         if self.sampling is None:
-            correction, memory_rate = self.law(time, measurement, now.law)
-            correction = self.allocated(correction)
+            wish, memory_rate = self.law(time, measurement, now.law)
+            correction = self.allocated(wish)
         else:
             correction, memory_rate = now.held.now, jax.tree.map(jnp.zeros_like, now.law)
         wanted = self._asked(correction)
@@ -180,11 +182,11 @@ class ClosedLoop(eqx.Module):
         """
         assert self.sampling is not None
         at = self.instant(time, vector)
-        correction, memory_rate = self.law(time, at.measurement, at.now.law)
-        found = self.allocated(correction)
+        wish, memory_rate = self.law(time, at.measurement, at.now.law)
+        found = self.allocated(wish)
         worked_out = jax.tree.map(
             lambda new, old: jnp.broadcast_to(jnp.asarray(new, dtype=old.dtype), old.shape),
-            Correction(*found[:3]),
+            found,
             at.now.held.now,
         )
         memory = jax.tree.map(lambda m, r: m + self.sampling.period * r, at.now.law, memory_rate)  # pyright: ignore[reportOptionalMemberAccess]

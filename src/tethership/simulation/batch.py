@@ -217,11 +217,14 @@ def fly_lanes(
     lanes = jax.vmap(_started, in_axes=(axes, None, None, -1), out_axes=-1)(loops, stop, limits, vectors)
     advance = jax.vmap(_stepped, in_axes=(axes, None, None, None, -1, None), out_axes=-1)
     beats = len(rhythm.step)
-    starts = jnp.cumsum(rhythm.step) - rhythm.step
-    bar = jnp.sum(rhythm.step)
+    starts, whole = jnp.cumsum(rhythm.step) - rhythm.step, jnp.sum(rhythm.step)
+    only = jax.tree.map(lambda part: part[0], rhythm)
 
     def time_of(count: Int[Array, ""]) -> Float[Array, ""]:
-        return (count // beats) * bar + starts[count % beats]
+        return count * only.step if beats == 1 else (count // beats) * whole + starts[count % beats]
+
+    def beat_of(count: Int[Array, ""]) -> Beat:
+        return only if beats == 1 else jax.tree.map(lambda part: part[count % beats], rhythm)
 
     def onward(loops: ClosedLoop, count: Int[Array, ""], lanes: Lane, fewest: int) -> tuple[Int[Array, ""], Lane]:
         """Fly from a number of steps on until no more than so many flights are under way, or the time is up."""
@@ -231,8 +234,7 @@ def fly_lanes(
 
         def forward(carry: tuple[Array, Lane]) -> tuple[Array, Lane]:
             count, now = carry
-            beat = jax.tree.map(lambda part: part[count % beats], rhythm)
-            return count + 1, advance(loops, stop, limits, time_of(count), now, beat)
+            return count + 1, advance(loops, stop, limits, time_of(count), now, beat_of(count))
 
         return jax.lax.while_loop(unfinished, forward, (count, lanes))
 
