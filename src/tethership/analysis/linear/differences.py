@@ -24,7 +24,7 @@ def central_differences(
     together = jnp.concatenate([state, inputs])
 
     def rates(vector: Float[Array, "n"]) -> Float[Array, "12"]:
-        return right_side(plant, vector[:12], vector[12:])
+        return right_side(plant, vector[: len(state)], vector[len(state) :])
 
     def slope(direction: Float[Array, "n"]) -> Float[Array, "12"]:
         near = rates(together + STEP * direction) - rates(together - STEP * direction)
@@ -32,4 +32,4 @@ def central_differences(
         return (8.0 * near - far) / (12.0 * STEP)
 
     slopes = jax.vmap(slope, out_axes=1)(jnp.eye(together.shape[0]))
-    return slopes[:, :12], slopes[:, 12:]
+    return slopes[:, : len(state)], slopes[:, len(state) :]

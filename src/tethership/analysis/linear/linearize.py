@@ -11,23 +11,29 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from tethership.analysis.linear.closed import closed_model
 from tethership.analysis.linear.differences import central_differences
 from tethership.analysis.linear.model import LinearModel
 from tethership.analysis.linear.outputs import linear_outputs
 from tethership.analysis.linear.right_side import WIND_UNITS, input_vector, loads, right_side
 from tethership.analysis.linear.semi_analytic import semi_analytic
 from tethership.analysis.trim.trim import TrimOutcome, TrimPoint
+from tethership.control import AbstractLaw
 from tethership.errors import ConfigError, suggestion
 from tethership.plant import Command, State, TetheredAirship
 from tethership.plant.balance import DRIFT_LIMIT, drift, left_over, residual_limit
+from tethership.plant.layout import open_loop, open_state
 from tethership.plant.names import LENGTH, REWIND_RATE, WIND_INPUTS
 from tethership.plant.ship import mass_matrix
-from tethership.plant.state import STATE_NAMES, STATE_UNITS
+from tethership.plant.state import STATE_NAMES
 from tethership.scenario import Scenario
 from tethership.spatial import rotation_matrix
 
 ROUTES = ("exact", "semi_analytic", "differences")
 """The three independent routes to A and U."""
+
+LOOPS = ("open", "closed")
+"""Whether the channels are inputs, or laws command them."""
 
 WORST_CONDITION = 1e8
 """Largest condition number of the mass matrix, lengths in half hulls: beyond it half of the digits are gone."""
@@ -38,62 +44,63 @@ class Matrices(NamedTuple):
 
     Attributes
     ----------
-    state : Float[Array, "12 12"]
+    state : Float[Array, "n n"]
         A.
-    input : Float[Array, "12 inputs"]
+    input : Float[Array, "n inputs"]
         U.
     """
 
-    state: Float[Array, "12 12"]
-    input: Float[Array, "12 inputs"]
+    state: Float[Array, "n n"]
+    input: Float[Array, "n inputs"]
 
 
-def differentiate(plant: TetheredAirship, state: Float[Array, "12"], inputs: Float[Array, "inputs"]) -> Matrices:
+def differentiate(plant: TetheredAirship, state: Float[Array, "n"], inputs: Float[Array, "inputs"]) -> Matrices:
     """Return A and U by exact differentiation, not compiled.
 
     Parameters
     ----------
     plant : TetheredAirship
-    state : Float[Array, "12"]
+    state : Float[Array, "n"]
         s₀.
     inputs : Float[Array, "inputs"]
         δ₀, as `input_vector` returns them.
     """
 
-    def rates(together: Float[Array, "n"]) -> Float[Array, "12"]:
-        return right_side(plant, together[:12], together[12:])
+    def rates(together: Float[Array, "n"]) -> Float[Array, "n"]:
+        return right_side(plant, together[: len(state)], together[len(state) :])
 
     slopes = jax.jacfwd(rates)(jnp.concatenate([state, inputs]))
-    return Matrices(slopes[:, :12], slopes[:, 12:])
+    return Matrices(slopes[:, : len(state)], slopes[:, len(state) :])
 
 
-def comparable_coordinates(plant: TetheredAirship, state: Float[Array, "12"]) -> Float[Array, "12 12"]:
+def comparable_coordinates(plant: TetheredAirship, state: Float[Array, "n"]) -> Float[Array, "n n"]:
     """Return the matrix to comparable coordinates at a state.
 
     Parameters
     ----------
     plant : TetheredAirship
-    state : Float[Array, "12"]
+    state : Float[Array, "n"]
 
     Notes
     -----
     Velocities become those relative to the air, v − Rᵀv_w: in them the heading mode of a free ship is ψ alone and
-    side-slip is what the word says. Rates and angles are multiplied by half the hull's length.
+    side-slip is what the word says. Rates and angles are multiplied by half the hull's length; states of actuators are
+    left in their own units.
     """
 
-    def coordinates(vector: Float[Array, "12"]) -> Float[Array, "12"]:
+    def coordinates(vector: Float[Array, "n"]) -> Float[Array, "n"]:
         wind = plant.environment.without_fluctuations().wind_at(vector[9:12], jnp.zeros(()))
         return vector.at[:3].add(-rotation_matrix(vector[6:9]).T @ wind)
 
     reach = 0.5 * plant.ship.outline.station[-1]
-    scale = jnp.ones(12).at[3:9].set(reach)
+    scale = jnp.ones(len(state)).at[3:9].set(reach)
     return scale[:, None] * jax.jacfwd(coordinates)(state)
 
 
 @eqx.filter_jit
 def _exact(
-    plant: TetheredAirship, state: Float[Array, "12"], inputs: Float[Array, "inputs"]
-) -> tuple[Matrices, Float[Array, "12 12"], Float[Array, "6"], Float[Array, "6 6"]]:
+    plant: TetheredAirship, state: Float[Array, "n"], inputs: Float[Array, "inputs"]
+) -> tuple[Matrices, Float[Array, "n n"], Float[Array, "6"], Float[Array, "6 6"]]:
     """Return A and U, the comparable coordinates, the force and moment left over [N, N m], Mⁱ + Mᵃ over half hulls."""
     here = State.from_vector(state)
     left = -plant.ship.body.gyroscopic(here.velocity, here.rates).as_vector()
@@ -105,19 +112,22 @@ def _exact(
 
 
 def linearize(
-    system: Scenario | TetheredAirship,
-    point: TrimPoint | tuple[State, Command],
+    system: Scenario | TetheredAirship | TrimPoint,
+    point: TrimPoint | tuple[State, Command] | None = None,
     route: str = "exact",
     length_states: bool = False,
     require_equilibrium: bool = True,
+    loop: str = "open",
+    law: AbstractLaw | None = None,
 ) -> LinearModel:
     """Return the linear model of a ship, free or on cables, about a point.
 
     Parameters
     ----------
     system : Scenario or TetheredAirship
-        A scenario gives the names of thrusters, fins and cables; a bare plant has them numbered.
-    point : TrimPoint or (State, Command)
+        A scenario gives the names of thrusters, fins and cables; a bare plant has them numbered. Or a TrimPoint, which
+        knows its scenario.
+    point : TrimPoint or (State, Command), optional
         Where; from `trim`, at rest or in steady motion.
     route : str
         `exact` (automatic differentiation of the whole right-hand side), `semi_analytic` (Eqs. 26–39 of the paper) or
@@ -126,11 +136,17 @@ def linearize(
         Make each cable's unstretched length a state, dL_t/dt = −Ψ, with the rewind rate Ψ as a control.
     require_equilibrium : bool
         Refuse a point that is none.
+    loop : str
+        `open` (the channels are inputs) or `closed` (with the scenario's laws; what is added to what they ask is an
+        input). A sampled law gives a discrete model, `LinearModel.sample_time` apart.
+    law : AbstractLaw, optional
+        Closes the loop instead of the scenario's layers.
 
     Returns
     -------
     LinearModel
-        States as `STATE_NAMES` (ground velocity and rates in body axes, Euler angles, position in ground axes); inputs
+        States as `STATE_NAMES` (ground velocity and rates in body axes, Euler angles, position in ground axes), then
+        those of actuators that lag, and in a closed loop those of the laws; inputs
         are throttles [-], deflections [rad], the wind's change [m/s] and rate [m/s²] in ground axes, lengths [m];
         outputs as `LinearModel` lists them, differentiated exactly whatever the route.
 
@@ -140,6 +156,8 @@ def linearize(
         The point is not in equilibrium (it says how far off), the route is not known, or the model is too singular to
         divide by (mass matrix, pitch of ±90°).
     """
+    if isinstance(system, TrimPoint) and point is None and system.scenario is not None:
+        system, point = system.scenario, system
     if not isinstance(system, Scenario | TetheredAirship):
         raise ConfigError(f"linearize: a scenario is needed, not {system!r}; give what load_scenario() returns")
     if not isinstance(point, TrimPoint) and not (isinstance(point, tuple) and len(point) == 2):
@@ -150,9 +168,11 @@ def linearize(
             f"linearize: the trim found no equilibrium: {left[:3].max():.3g} N and {left[3:].max():.3g} N m are left "
             f"over. {point.message}"
         )
-    plant = system.system if isinstance(system, Scenario) else system
+    if loop not in LOOPS:
+        raise ConfigError(f"linearize: unknown loop {loop!r}{suggestion(loop, LOOPS)} Allowed: {', '.join(LOOPS)}")
+    plant = (system.system if isinstance(system, Scenario) else system).at_mean()
     state, command = (point.state, point.command) if isinstance(point, TrimPoint) else point
-    vector, inputs = state.as_vector(), input_vector(plant, command)
+    vector, inputs = open_state(plant, state, command), input_vector(plant, command)
     if not np.isfinite(np.asarray(vector)).all():
         raise ConfigError("linearize: the point has states that are not finite; check its state")
     exact, comparable, residual, mass = _exact(plant, vector, inputs)
@@ -164,12 +184,13 @@ def linearize(
     first_length = len(names) - len(plant.cables)
     cables = tuple(name.removeprefix(LENGTH) for name in names[first_length:])
     measured = linear_outputs(plant, vector, inputs, cables)
+    layout = open_loop(plant)
     model = LinearModel(
         np.asarray(matrices[0]),
         np.asarray(matrices[1]),
-        STATE_NAMES,
+        layout.names,
         names,
-        STATE_UNITS,
+        layout.units,
         units,
         np.asarray(vector),
         np.asarray(inputs),
@@ -178,6 +199,10 @@ def linearize(
         names[: first_length - len(WIND_INPUTS)],
         *measured,
     )
+    if loop == "closed":
+        if not isinstance(system, Scenario):
+            raise ConfigError("linearize: a closed loop needs a scenario, which says its laws; a bare plant has none")
+        return closed_model(system, model, state, command, law, length_states)
     return _with_lengths(model, plant) if length_states else model
 
 
@@ -211,12 +236,17 @@ def _check_equilibrium(plant: TetheredAirship, state: State, residual: np.ndarra
 
 
 def _by_route(
-    route: str, exact: Matrices, plant: TetheredAirship, state: Float[Array, "12"], inputs: Float[Array, "inputs"]
+    route: str, exact: Matrices, plant: TetheredAirship, state: Float[Array, "n"], inputs: Float[Array, "inputs"]
 ) -> tuple[Any, Any]:
     """Return A and U by the route of that name."""
     match route:
         case "exact":
             return exact.state, exact.input
+        case "semi_analytic" if len(state) > len(STATE_NAMES):
+            raise ConfigError(
+                "linearize: the semi_analytic route is the paper's, whose actuators have no states; take exact, or "
+                "leave lag and rate_limit out"
+            )
         case "semi_analytic":
             found = semi_analytic(plant, state, inputs)
             return found.state_matrix(), found.input_matrix()
@@ -255,16 +285,16 @@ def _attributes(system: Scenario | TetheredAirship, point: Any, route: str) -> d
 
 def _with_lengths(model: LinearModel, plant: TetheredAirship) -> LinearModel:
     """Return the model with the cables' lengths as states and their rewind rates Ψ as inputs."""
-    count, width = len(plant.cables), len(model.inputs)
+    count, width, size = len(plant.cables), len(model.inputs), len(model.states)
     kept = width - count
     lengths = model.inputs[kept:]
-    state = np.zeros((12 + count, 12 + count))
-    state[:12, :12], state[:12, 12:] = model.A, model.U[:, kept:]
-    control = np.zeros((12 + count, width))
-    control[:12, :kept] = model.U[:, :kept]
-    control[12:, kept:] = -np.eye(count)
-    comparable = np.eye(12 + count)
-    comparable[:12, :12] = model.comparable
+    state = np.zeros((size + count, size + count))
+    state[:size, :size], state[:size, size:] = model.A, model.U[:, kept:]
+    control = np.zeros((size + count, width))
+    control[:size, :kept] = model.U[:, :kept]
+    control[size:, kept:] = -np.eye(count)
+    comparable = np.eye(size + count)
+    comparable[:size, :size] = model.comparable
     rewinds = tuple(name.replace(LENGTH, REWIND_RATE, 1) for name in lengths)
     return LinearModel(
         state,

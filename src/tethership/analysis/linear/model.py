@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import scipy.linalg
 import xarray as xr
 
 from tethership._version import __version__
@@ -52,7 +53,7 @@ POSITION = ("north", "east", "down")
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class LinearModel:
-    """Δṡ = A Δs + U Δδ, Δy = C Δs + D Δδ about a point.
+    """Δṡ = A Δs + U Δδ, Δy = C Δs + D Δδ about a point; with a sampled law Δs⁺ = A Δs + U Δδ over its period.
 
     Attributes
     ----------
@@ -176,9 +177,15 @@ class LinearModel:
         )
         return float(between / max(np.abs(matrix).max(), 1e-300))
 
+    @property
+    def sample_time(self) -> float:
+        """Period of a discrete model [s]; 0 for a continuous one."""
+        return float(self.attributes.get("sample_time", 0.0))
+
     def comparable_matrix(self) -> np.ndarray:
-        """Return A in comparable coordinates [1/s]."""
-        return self.comparable @ self.A @ np.linalg.inv(self.comparable)
+        """Return A in comparable coordinates [1/s]; of a discrete model the continuous one that agrees at its ticks."""
+        matrix = equivalent(self.A, self.sample_time) if self.sample_time else self.A
+        return self.comparable @ matrix @ np.linalg.inv(self.comparable)
 
     def _part(self, names: Sequence[str]) -> "LinearModel":
         """Return the model of the named states that are there.
@@ -232,6 +239,7 @@ class LinearModel:
             inputs=list(chosen.inputs),
             outputs=[known[i] for i in rows],
             name="airship",
+            **({"dt": self.sample_time} if self.sample_time else {}),
         )
 
     def to_dataset(self) -> xr.Dataset:
@@ -342,3 +350,20 @@ def _places(chosen: Sequence[str], known: Sequence[str], what: str) -> list[int]
         if name not in known:
             raise ConfigError(f"the model has no {what} {name!r}{suggestion(name, known)} It has: {', '.join(known)}")
     return [list(known).index(name) for name in chosen]
+
+
+def equivalent(matrix: np.ndarray, period: float) -> np.ndarray:
+    """Return ln(Φ)/T of a discrete matrix [1/s]: its eigenvalues are those of the modes.
+
+    Notes
+    -----
+    An eigenvalue z that is negative and real alternates at every tick; the rate of its decay is kept, ln|z|/T. One that
+    is zero (gone within a period) is taken as 1e-12.
+    """
+    found: Any = np.linalg.eig(matrix)
+    values, vectors = np.asarray(found[0], dtype=complex), np.asarray(found[1], dtype=complex)
+    alternating = (np.abs(values.imag) < 1e-12 * np.abs(values)) & (values.real < 0)
+    if not alternating.any() and np.abs(values).min(initial=1.0) > 1e-12:
+        return np.real(np.asarray(scipy.linalg.logm(matrix))) / period
+    plain = np.where(np.abs(values) > 1e-12, np.where(alternating, np.abs(values), values), 1e-12)
+    return np.real(vectors @ np.diag(np.log(plain)) @ np.linalg.inv(vectors)) / period

@@ -14,7 +14,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from tethership.analysis.linear.right_side import unpack_inputs
-from tethership.plant import State, TetheredAirship
+from tethership.plant import TetheredAirship
+from tethership.plant.layout import split_open
 from tethership.spatial import rotation_matrix, safe_norm
 
 OF_SHIP = ("airspeed", "angle_of_attack", "sideslip", "rate_of_climb", "clearance")
@@ -37,7 +38,7 @@ class Outputs(NamedTuple):
     values : ndarray
         y₀ at the point.
     state, input : ndarray
-        C, shape (outputs, 12), and D, shape (outputs, inputs).
+        C, shape (outputs, states), and D, shape (outputs, inputs).
     """
 
     names: tuple[str, ...]
@@ -48,11 +49,11 @@ class Outputs(NamedTuple):
 
 
 def measure(
-    plant: TetheredAirship, state: Float[Array, "12"], inputs: Float[Array, "inputs"]
+    plant: TetheredAirship, state: Float[Array, "n"], inputs: Float[Array, "inputs"]
 ) -> Float[Array, "outputs"]:
     """Return tensions [N], then `OF_SHIP` [SI], at t = 0; arguments as in `right_side`."""
     changed, _, lengths = unpack_inputs(plant, inputs)
-    now, pose = jnp.zeros(()), State.from_vector(state)
+    now, (pose, _) = jnp.zeros(()), split_open(plant, state)
     rotation = rotation_matrix(pose.attitude)
     centre = changed.ship.buoyancy.centre
     velocity = pose.velocity + jnp.cross(pose.rates, centre)
@@ -72,18 +73,21 @@ def measure(
 
 
 @eqx.filter_jit
-def _slopes(plant: TetheredAirship, together: Float[Array, "n"]) -> tuple[Float[Array, "m"], Float[Array, "m n"]]:
-    """Return the outputs and their slopes."""
+def _slopes(
+    plant: TetheredAirship, state: Float[Array, "n"], inputs: Float[Array, "inputs"]
+) -> tuple[Float[Array, "m"], Float[Array, "m n"]]:
+    """Return the outputs and their slopes, states before inputs."""
 
     def measured(vector: Float[Array, "n"]) -> Float[Array, "m"]:
-        return measure(plant, vector[:12], vector[12:])
+        return measure(plant, vector[: len(state)], vector[len(state) :])
 
+    together = jnp.concatenate([state, inputs])
     return measured(together), jax.jacfwd(measured)(together)
 
 
 def linear_outputs(
     plant: TetheredAirship,
-    state: Float[Array, "12"],
+    state: Float[Array, "n"],
     inputs: Float[Array, "inputs"],
     cables: tuple[str, ...],
 ) -> Outputs:
@@ -97,7 +101,7 @@ def linear_outputs(
     cables : tuple of str
         Names of the cables.
     """
-    values, slopes = map(np.asarray, _slopes(plant, jnp.concatenate([state, inputs])))
+    values, slopes = map(np.asarray, _slopes(plant, state, inputs))
     names = np.array([*(f"tension_{name}" for name in cables), *OF_SHIP])
     units = np.array(["N"] * len(cables) + list(OF_SHIP_UNITS))
     kept = np.isfinite(slopes).all(axis=1) & np.isfinite(values)
@@ -105,5 +109,9 @@ def linear_outputs(
         kept &= ~np.isin(names, OF_SHIP[:3])
     chosen = slopes[kept]
     return Outputs(
-        tuple(map(str, names[kept])), tuple(map(str, units[kept])), values[kept], chosen[:, :12], chosen[:, 12:]
+        tuple(map(str, names[kept])),
+        tuple(map(str, units[kept])),
+        values[kept],
+        chosen[:, : len(state)],
+        chosen[:, len(state) :],
     )

@@ -12,7 +12,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from tethership.physics.gust import WindChange
-from tethership.plant import Command, State, TetheredAirship
+from tethership.plant import Command, TetheredAirship
+from tethership.plant.layout import split_open
 from tethership.spatial import Wrench
 
 WIND_UNITS = ("m/s", "m/s", "m/s", "m/s^2", "m/s^2", "m/s^2")
@@ -36,26 +37,30 @@ def unpack_inputs(
     return dataclasses.replace(plant, environment=environment), command, inputs[after + 6 :]
 
 
-def right_side(plant: TetheredAirship, state: Float[Array, "12"], inputs: Float[Array, "inputs"]) -> Float[Array, "12"]:
-    """Return the rates of the twelve states [SI per second] at t = 0.
+def right_side(plant: TetheredAirship, state: Float[Array, "n"], inputs: Float[Array, "inputs"]) -> Float[Array, "n"]:
+    """Return the rates of all states whose channels are inputs [SI per second] at t = 0.
 
     Parameters
     ----------
     plant : TetheredAirship
-    state : Float[Array, "12"]
-        In the order of `STATE_NAMES`.
+    state : Float[Array, "n"]
+        In the order of `plant.layout.open_loop`: ship, then actuators that lag.
     inputs : Float[Array, "inputs"]
-        As `input_vector` returns them.
+        As `input_vector` returns them; channels that lag are asked so much, the others do it.
     """
-    changed, command, lengths = unpack_inputs(plant, inputs)
-    return changed.derivative(jnp.zeros(()), State.from_vector(state), command, lengths).as_vector()
+    changed, asked, lengths = unpack_inputs(plant, inputs)
+    pose, own = split_open(plant, state)
+    rate = changed.derivative(jnp.zeros(()), pose, changed.actuated(own, asked), lengths).as_vector()
+    moving = changed.actuator_rates(own, asked)
+    return jnp.concatenate([rate, *(part for part in moving if part.shape[0])]) if len(state) > len(rate) else rate
 
 
 def loads(
-    plant: TetheredAirship, state: Float[Array, "12"], inputs: Float[Array, "inputs"]
+    plant: TetheredAirship, state: Float[Array, "n"], inputs: Float[Array, "inputs"]
 ) -> dict[str, Float[Array, "6"]]:
     """Return every load by name (f, m) about P, body axes [N, N m]; arguments as in `right_side`."""
-    changed, command, lengths = unpack_inputs(plant, inputs)
-    now, pose = jnp.zeros(()), State.from_vector(state)
-    found: dict[str, Wrench] = changed.wrenches(now, pose, command, changed.cable_states(now, pose, lengths))
+    changed, asked, lengths = unpack_inputs(plant, inputs)
+    now, (pose, own) = jnp.zeros(()), split_open(plant, state)
+    cables = changed.cable_states(now, pose, lengths)
+    found: dict[str, Wrench] = changed.wrenches(now, pose, changed.actuated(own, asked), cables)
     return {name: load.as_vector() for name, load in found.items()}

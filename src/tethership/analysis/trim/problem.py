@@ -83,7 +83,10 @@ def pose(config: ScenarioConfig, plant: TetheredAirship, question: Question) -> 
         From `ask`.
     """
     base = jnp.zeros(12 + plant.ship.thrusters.count + plant.ship.fins.count)
-    base = base.at[0:3].set(jnp.asarray(config.trim.velocity)).at[6:9].set(jnp.asarray(config.trim.attitude))
+    velocity, drawn = jnp.asarray(config.trim.velocity), plant.anchor_velocity()
+    base = (
+        base.at[0:3].set(velocity if drawn is None else velocity + drawn).at[6:9].set(jnp.asarray(config.trim.attitude))
+    )
     into_wind = jnp.asarray(config.wind.from_direction)
     turned = jnp.asarray(config.wind.speed) > 0
     if question.heading_free:

@@ -44,6 +44,8 @@ class TrimPoint(NamedTuple):
         Tension over limit [-] of every watched limit (`results.limits`) that is passed.
     clearance_hull, clearance_cable : float or None
         Height of the lowest points of hull and cables above the ground [m]; None without ground or cable.
+    scenario : Scenario, optional
+        What was trimmed.
     """
 
     state: State
@@ -57,6 +59,7 @@ class TrimPoint(NamedTuple):
     limits_passed: dict[str, float]
     clearance_hull: float | None
     clearance_cable: float | None
+    scenario: Scenario | None = None
 
 
 def trim(
@@ -112,4 +115,4 @@ def solved(scenario: Scenario, question: Question) -> tuple[np.ndarray, TrimPoin
     values = solve(problem)
     found = described(problem, jnp.asarray(values))
     said = judge(scenario, found, float(residual_limit(scenario.system)), question.height_sought)
-    return values, TrimPoint(found.state, found.command, found.tension, found.clipped, *said)
+    return values, TrimPoint(found.state, found.command, found.tension, found.clipped, *said, scenario)
