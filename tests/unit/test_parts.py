@@ -187,12 +187,15 @@ def test_the_closed_loop_is_the_slope_of_its_rate(closed):
     layout = closed_loop(loop)
     kept = [layout.names.index(name) for name in model.states]
     field = jax.jit(lambda x: loop.vector_field(jnp.zeros(()), x))
-    step = 1e-5
+    step = 1e-7  # a load with |v|v at rest has a corner: the error of a central difference goes with the step
     columns = [(field(vector.at[i].add(step)) - field(vector.at[i].add(-step))) / (2 * step) for i in kept]
     differences = np.stack([np.asarray(column)[kept] for column in columns], axis=1)
     assert np.abs(model.A - differences).max() < 1e-6 * np.abs(model.A).max()
-    ours, theirs = (np.sort_complex(np.linalg.eigvals(matrix)) for matrix in (model.A, differences))
-    assert np.abs(np.prod(ours[np.abs(ours) > 1e-3]) / np.prod(theirs[np.abs(theirs) > 1e-3]) - 1.0) < 1e-6
+    ours, theirs = (np.linalg.eigvals(matrix) for matrix in (model.A, differences))
+    apart = np.abs(ours[:, None] - theirs[None, :]).min(axis=1)
+    slow = np.abs(ours) < 1e-3  # the double zero of position held by nothing: a pair is known to the root of rounding
+    assert apart[~slow].max() < 1e-6
+    assert apart[slow].max(initial=0.0) < 1e-3
 
 
 def test_an_ideal_closed_loop_is_the_open_one_with_feedback(docking):
@@ -300,7 +303,7 @@ def test_slopes_over_the_whole_layout_are_finite(slow):
         ({"vehicle.thrusters.tail_down.lag": -1.0}, "at least 0"),
         ({"vehicle.thrusters.tail_down.rate_limit": 0.0}, "must be above 0"),
         ({"vehicle.thrusters.tail_down.dead_band": 1.5}, "at most 0.99"),
-        ({"cables.nose.anchor_motion": {"model": "circular"}}, "circular"),
+        ({"cables.nose.anchor_motion": {"model": "circular"}}, "one of 'steady', 'harmonic'"),
         ({"cables.nose.anchor_motion": {"model": "harmonic"}}, "amplitude"),
         (
             {"cables.nose.anchor_motion": {"model": "steady", "velocity": {"value": [1.0, 0.0, 1.0], "unit": "m/s"}}},

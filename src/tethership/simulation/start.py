@@ -50,8 +50,12 @@ def moved_start(config: ScenarioConfig, plant: TetheredAirship, trimmed: State) 
     start = config.start
     held = plant.cables[0].tether_point if start.hold == "tether_point" and plant.cables else jnp.zeros(3)
     attitude = trimmed.attitude + jnp.asarray(start.attitude_offset)
-    moved = (rotation_matrix(trimmed.attitude) - rotation_matrix(attitude)) @ held
-    return State(trimmed.velocity, trimmed.rates, attitude, trimmed.position + moved)
+    before, after = rotation_matrix(trimmed.attitude), rotation_matrix(attitude)
+    moved = (before - after) @ held
+    velocity, drawn = trimmed.velocity, plant.anchor_velocity()
+    if drawn is not None:  # what it has of an anchor under way does not turn with the ship
+        velocity = velocity + (after - before).T @ drawn
+    return State(velocity, trimmed.rates, attitude, trimmed.position + moved)
 
 
 _moved = eqx.filter_jit(moved_start)

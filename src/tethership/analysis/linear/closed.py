@@ -92,10 +92,10 @@ def period_map(
     together = np.zeros((count + width, count + width))
     together[:count, :count], together[:count, count:] = A, U
 
-    def flow(time: float) -> np.ndarray:
+    def flow(time: float) -> Any:
         return scipy.linalg.expm(together * time)
 
-    def jump(matrix: np.ndarray) -> np.ndarray:
+    def jump(matrix: np.ndarray) -> Any:
         return scipy.linalg.block_diag(matrix, np.eye(width))
 
     whole = flow(period - delay) @ jump(act) @ flow(delay) @ jump(look)
@@ -161,6 +161,19 @@ def closed_model(
         _columns(model, [names[i] for i in kept]),
         _columns(model, list(inputs), channels=False),
     )
+
+
+def states_kept(loop: ClosedLoop) -> list[int]:
+    """Return the places of the states of a continuous closed loop whose cables' lengths are held."""
+    return [i for i, name in enumerate(closed_loop(loop).names) if not name.startswith(LENGTH)]
+
+
+def state_matrix(loop: ClosedLoop, state: State) -> Float[Array, "n n"]:
+    """Return A of a continuous closed loop at a point, the cables' lengths held; can be traced."""
+    kept = jnp.asarray(states_kept(loop))
+    vector = loop.initial(state)
+    slopes = jax.jacfwd(lambda x: loop.vector_field(jnp.zeros(()), x))(vector)
+    return slopes[kept][:, kept]
 
 
 def _still(plant: TetheredAirship) -> TetheredAirship:

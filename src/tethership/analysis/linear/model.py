@@ -361,7 +361,8 @@ def equivalent(matrix: np.ndarray, period: float) -> np.ndarray:
     is zero (gone within a period) is taken as 1e-12.
     """
     found: Any = np.linalg.eig(matrix)
-    values, vectors = np.asarray(found[0], dtype=complex), np.asarray(found[1], dtype=complex)
+    values: Any = np.asarray(found[0], dtype=complex)
+    vectors: Any = np.asarray(found[1], dtype=complex)
     alternating = (np.abs(values.imag) < 1e-12 * np.abs(values)) & (values.real < 0)
     if not alternating.any() and np.abs(values).min(initial=1.0) > 1e-12:
         return np.real(np.asarray(scipy.linalg.logm(matrix))) / period

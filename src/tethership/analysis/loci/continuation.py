@@ -16,13 +16,16 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from tethership.analysis.linear.closed import state_matrix
 from tethership.analysis.linear.linearize import comparable_coordinates
 from tethership.analysis.linear.right_side import input_vector, right_side
 from tethership.analysis.trim.problem import Question, pose
 from tethership.analysis.trim.solve import EFFORT, Problem, described
 from tethership.plant.balance import DRIFT_LIMIT, residual_limit
+from tethership.plant.layout import open_state
 from tethership.scenario import ScenarioConfig
 from tethership.scenario.build import build_system
+from tethership.scenario.build_loop import build_loop
 from tethership.scenario.parameters import with_values
 
 BATCH = 128
@@ -67,9 +70,9 @@ class Batch(NamedTuple):
     limit : array
         Largest residual of an equilibrium [N, N m].
     matrix : array
-        A [SI], (12, 12).
+        A [SI], (states, states).
     comparable : array
-        Matrix to comparable coordinates, (12, 12).
+        Matrix to comparable coordinates, (states, states).
     """
 
     unknowns: Any
@@ -122,20 +125,26 @@ def _solve_batch(
     question: Question,
     values: Float[Array, "parameters batch"],
     starts: Float[Array, "unknowns batch"],
+    closed: bool,
 ) -> Batch:
     """Return a batch of trims with their state matrices; `places` are the leaves that each parameter moves."""
 
     def point(value: Float[Array, "parameters"], start: Float[Array, "unknowns"]) -> Batch:
         numbers = with_values(config, places, value)
-        plant = build_system(numbers)
+        plant = build_system(numbers).at_mean()
         problem = pose(numbers, plant, question)
         found = nearby_equilibrium(problem, start)
         here = described(problem, found)
-        vector, inputs = here.state.as_vector(), input_vector(plant, here.command)
-        matrix = jax.jacfwd(lambda s: right_side(plant, s, inputs))(vector)
+        vector, inputs = open_state(plant, here.state, here.command), input_vector(plant, here.command)
+        comparable = comparable_coordinates(plant, vector)
+        if closed:
+            matrix = state_matrix(build_loop(numbers, plant, here.command), here.state)
+            comparable = jnp.eye(len(matrix)).at[: len(vector), : len(vector)].set(comparable)
+        else:
+            matrix = jax.jacfwd(lambda s: right_side(plant, s, inputs))(vector)
         return Batch(
             found,
-            vector,
+            here.state.as_vector(),
             here.command.throttle,
             here.command.deflection,
             here.tension,
@@ -146,7 +155,7 @@ def _solve_batch(
             here.cables,
             residual_limit(plant),
             matrix,
-            comparable_coordinates(plant, vector),
+            comparable,
         )
 
     return jax.vmap(point, in_axes=-1, out_axes=-1)(values, starts)
@@ -161,6 +170,7 @@ def solve_points(
     start: np.ndarray,
     per_line: int,
     usual: Sequence[int] = (),
+    closed: bool = False,
 ) -> Batch:
     """Return trims and state matrices of many points.
 
@@ -186,6 +196,8 @@ def solve_points(
         Points of each line, neighbours close to each other.
     usual : sequence of int
         Leaves that the program can move although these points do not: sweeps of any of them share it.
+    closed : bool
+        Matrices of the closed loop, with the scenario's laws.
     """
     leaves = jax.tree.leaves(config)
     column = {place: i for i, group in enumerate(places) for place in group}
@@ -194,7 +206,7 @@ def solve_points(
 
     def at(where: np.ndarray, begin: np.ndarray) -> Batch:
         own = [where[:, column[p]] if p in column else np.full(len(where), float(leaves[p])) for p in every]
-        return _in_batches(config, fixed, question, np.stack(own, axis=1), begin)
+        return _in_batches(config, fixed, question, np.stack(own, axis=1), begin, closed)
 
     def along(stages: int, chosen: np.ndarray) -> Batch:
         begin = np.repeat(start[None], len(chosen), axis=0)
@@ -302,13 +314,14 @@ def _in_batches(
     question: Question,
     values: np.ndarray,
     starts: np.ndarray,
+    closed: bool,
 ) -> Batch:
     """Return the points of `values` (points first), computed in batches of one size."""
     parts = []
     for first in range(0, len(values), BATCH):
         rows = np.minimum(np.arange(first, first + BATCH), len(values) - 1)
         where, begin = jnp.asarray(values[rows].T), jnp.asarray(starts[rows].T)
-        parts.append(_solve_batch(config, places, question, where, begin))
+        parts.append(_solve_batch(config, places, question, where, begin, closed))
     fields = []
     for name in Batch._fields:
         arrays = [np.moveaxis(np.asarray(getattr(part, name)), -1, 0) for part in parts]

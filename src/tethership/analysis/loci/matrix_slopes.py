@@ -16,6 +16,7 @@ from tethership.analysis.trim.problem import Question, ask, pose, posed
 from tethership.analysis.trim.solve import Problem
 from tethership.analysis.trim.trim import TrimPoint
 from tethership.errors import ConfigError
+from tethership.plant.layout import open_state
 from tethership.scenario import Scenario, ScenarioConfig
 from tethership.scenario.build import build_system
 from tethership.scenario.parameters import Parameter, with_values
@@ -114,8 +115,8 @@ def _matrix(
     here = with_values(config, places, numbers)
     problem = pose(here, build_system(here), question)
     state, command = problem.unpack(unknowns)
-    inputs = input_vector(problem.plant, command)
-    return jax.jacfwd(lambda s: right_side(problem.plant, s, inputs))(state.as_vector()), problem
+    inputs, vector = input_vector(problem.plant, command), open_state(problem.plant, state, command)
+    return jax.jacfwd(lambda s: right_side(problem.plant, s, inputs))(vector), problem
 
 
 def _values_of(problem: Problem, point: TrimPoint) -> Float[Array, "unknowns"]:

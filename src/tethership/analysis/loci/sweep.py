@@ -5,13 +5,15 @@ Depends on: analysis.loci.continuation, analysis.loci.tracking, analysis.trim.tr
 
 import dataclasses
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 
+from tethership.analysis.linear.closed import states_kept
+from tethership.analysis.linear.linearize import LOOPS
 from tethership.analysis.loci.continuation import Batch, in_equilibrium, solve_points
 from tethership.analysis.loci.grid import Axis, fill_lines, lay_grid, usual_places
 from tethership.analysis.loci.locus_events import find_events, unstable_throughout
@@ -29,10 +31,12 @@ from tethership.analysis.trim.judgement import limits_passed
 from tethership.analysis.trim.outcome import Points, TrimOutcome, outcomes
 from tethership.analysis.trim.problem import Question, ask
 from tethership.analysis.trim.trim import solved
-from tethership.errors import ConfigError, TethershipError
+from tethership.errors import ConfigError, TethershipError, suggestion
 from tethership.plant import Command
+from tethership.plant.layout import closed_loop, open_loop
 from tethership.plant.state import STATE_NAMES
 from tethership.scenario import Scenario
+from tethership.scenario.build_loop import build_loop
 from tethership.scenario.parameters import Parameter, find_parameter, list_parameters, scenario_at
 
 FINE = 160
@@ -94,13 +98,15 @@ class Sweep:
     clearance_cable : ndarray
         The same of the cables' lowest point [m], NaN without cables.
     matrices : ndarray
-        A at every point, shape (points, 12, 12).
+        A at every point, shape (points, states, states).
     path : Path
         Eigenvalues and eigenvectors (columns, comparable coordinates) at every point, in the solver's order.
     orders : ndarray of int
         Place in `path` of each track's eigenvalue, shape (points, tracks).
     events : tuple of Happening
         Coalescence, splits, crossings and passages of the imaginary axis.
+    state_names : tuple of str
+        Names of the states of the matrices: those of the ship, of actuators that lag, and in a closed loop of the laws.
     """
 
     scenario: Scenario
@@ -123,6 +129,7 @@ class Sweep:
     path: Path
     orders: np.ndarray
     events: tuple[Happening, ...]
+    state_names: tuple[str, ...] = STATE_NAMES
 
     @property
     def trimmed(self) -> np.ndarray:
@@ -151,7 +158,7 @@ class Sweep:
         """Return the name of each track's mode at a point, from participation there; empty where there is none."""
         if not self.path.valid[point]:
             return tuple("" for _ in self.tracks)
-        return tuple(local_names(self.path, point)[place] for place in self.orders[point])
+        return tuple(local_names(self.path, point, self.state_names)[place] for place in self.orders[point])
 
     def named(self, word: str) -> Complex:
         """Return λ [1/s] of the mode that is, or has coalesced with, `word`, by participation at each point.
@@ -160,7 +167,7 @@ class Sweep:
         """
         found = np.full(len(self.outcomes), np.nan, dtype=np.complex128)
         for point in np.flatnonzero(self.trimmed):
-            for place, name in enumerate(local_names(self.path, int(point))):
+            for place, name in enumerate(local_names(self.path, int(point), self.state_names)):
                 if word == name or word in name.split("–"):
                     found[point] = self.path.values[point][place]
                     break
@@ -179,7 +186,7 @@ class Sweep:
         return scenario_at(self.scenario, {name: float(values[point]) for name, values in self.values.items()})
 
 
-def sweep(scenario: Scenario, *axes: Axis) -> Sweep:
+def sweep(scenario: Scenario, *axes: Axis, loop: str = "open") -> Sweep:
     """Return trim, state matrix and named, followed modes along parameters of a scenario.
 
     Parameters
@@ -189,6 +196,8 @@ def sweep(scenario: Scenario, *axes: Axis) -> Sweep:
     *axes : mapping
         Each axis moves one parameter or several together: ``{"wind.speed": np.linspace(6, 12, 13)}``. More than one
         axis make a grid. Values in SI; names as in the file (`cables.nose.length`, `vehicle.fins.*.area`).
+    loop : str
+        `open`, or `closed` with the scenario's laws: a sweep of a gain is then its root locus.
 
     Notes
     -----
@@ -206,6 +215,7 @@ def sweep(scenario: Scenario, *axes: Axis) -> Sweep:
     fill = max(1, math.ceil(FINE / max(shape[-1] - 1, 1))) if shape[-1] > 1 else 1
     fine, per_line = fill_lines(grid, shape[-1], fill)
     question = ask(scenario)
+    states = _states(scenario, loop)
     reference, start = _reference(scenario, parameters, grid, question)
     batch = solve_points(
         scenario.config.as_arrays(),
@@ -216,13 +226,14 @@ def sweep(scenario: Scenario, *axes: Axis) -> Sweep:
         start,
         per_line,
         usual_places(scenario),
+        loop == "closed",
     )
     path = _path(batch)
-    orders, lines = _followed(path, per_line, shape[:-1])
+    orders, lines = _followed(path, per_line, shape[:-1], states)
     ordered = np.take_along_axis(path.values, orders, axis=1)
     names = [parameter.name for parameter in parameters]
-    tracks = track_names(STATE_NAMES)
-    events = [event for line in lines for event in _happenings(path, orders, line, fine, names, tracks)]
+    tracks = track_names(states)
+    events = [event for line in lines for event in _happenings(path, orders, line, fine, names, tracks, states)]
     kept = np.concatenate([np.arange(line.start, line.stop, fill) for line in lines])
     valid = path.valid[kept]
     found = Batch(*(array[kept] for array in batch))
@@ -247,6 +258,7 @@ def sweep(scenario: Scenario, *axes: Axis) -> Sweep:
         path=Path(*(array[kept] for array in path)),
         orders=orders[kept],
         events=tuple(events),
+        state_names=states,
     )
 
 
@@ -280,10 +292,29 @@ def _path(batch: Batch) -> Path:
     return eigen_path(comparable, valid)
 
 
-def _followed(path: Path, per_line: int, outer: tuple[int, ...]) -> tuple[np.ndarray, list[range]]:
+def _states(scenario: Scenario, loop: str) -> tuple[str, ...]:
+    """Return the names of the states of a loop; raises ConfigError for a loop that is not known, or sampled."""
+    if loop not in LOOPS:
+        raise ConfigError(f"sweep: unknown loop {loop!r}{suggestion(loop, LOOPS)} Allowed: {', '.join(LOOPS)}")
+    if loop == "open":
+        return open_loop(scenario.system).names
+    if scenario.config.control.period is not None:
+        raise ConfigError(
+            "sweep: the laws are sampled (control.period), and loci are of continuous ones; leave control.period out, "
+            "or ask modes --loop closed at each point"
+        )
+    ship = scenario.system.ship
+    none = Command(jnp.zeros(ship.thrusters.count), jnp.zeros(ship.fins.count))
+    closed = build_loop(scenario.config, scenario.system, none)
+    return tuple(closed_loop(closed).names[i] for i in states_kept(closed))
+
+
+def _followed(
+    path: Path, per_line: int, outer: tuple[int, ...], states: tuple[str, ...]
+) -> tuple[np.ndarray, list[range]]:
     """Return the order of the eigenvalues at every point and the lines; every line continues the one before it."""
-    slots = slots_of(STATE_NAMES)
-    orders = np.zeros((len(path.values), len(STATE_NAMES)), dtype=int)
+    slots = slots_of(states)
+    orders = np.zeros((len(path.values), len(states)), dtype=int)
     lines = [range(first, first + per_line) for first in range(0, len(path.values), per_line)]
     starts: dict[tuple[int, ...], int] = {}
     for place, line in zip(np.ndindex(*outer) if outer else [()], lines, strict=True):
@@ -291,26 +322,37 @@ def _followed(path: Path, per_line: int, outer: tuple[int, ...]) -> tuple[np.nda
         if not valid:
             continue
         start = valid[0]
-        order = _linked(path, orders, start, starts, place)
+        order = _linked(path, orders, start, starts, place, states)
         starts[place] = start
         rows = slice(line.start, line.stop)
-        orders[rows] = follow(path.part(rows), start - line.start, order, STATE_NAMES, slots)
+        orders[rows] = follow(path.part(rows), start - line.start, order, states, slots)
     return orders, lines
 
 
 def _linked(
-    path: Path, orders: np.ndarray, start: int, starts: dict[tuple[int, ...], int], place: tuple[int, ...]
+    path: Path,
+    orders: np.ndarray,
+    start: int,
+    starts: dict[tuple[int, ...], int],
+    place: tuple[int, ...],
+    states: tuple[str, ...],
 ) -> np.ndarray:
     """Return the order where a line starts: matched to its neighbour's start, or by names on the first line."""
     for axis in reversed(range(len(place))):
         neighbour = (*place[:axis], place[axis] - 1, *place[axis + 1 :])
         if neighbour in starts:
             return matched(path, starts[neighbour], start, orders[starts[neighbour]])
-    return named_order(path, start, STATE_NAMES)
+    return named_order(path, start, states)
 
 
 def _happenings(
-    path: Path, orders: np.ndarray, line: range, fine: np.ndarray, names: list[str], tracks: list[str]
+    path: Path,
+    orders: np.ndarray,
+    line: range,
+    fine: np.ndarray,
+    names: list[str],
+    tracks: list[str],
+    states: tuple[str, ...],
 ) -> Iterator[Happening]:
     """Yield the events of one line with the parameters where they happen."""
     rows = slice(line.start, line.stop)
@@ -320,19 +362,19 @@ def _happenings(
         share = event.position - before
         here = (1.0 - share) * fine[line.start + before] + share * fine[line.start + before + 1]
         behind = next(i for i in range(line.start + before + 1, line.stop) if path.valid[i])
-        name = local_names(path, behind)[orders[behind][tracks.index(event.tracks[0])]]
+        name = local_names(path, behind, states)[orders[behind][tracks.index(event.tracks[0])]]
         where = dict(zip(names, here.tolist(), strict=True))
         yield Happening(event.kind, event.tracks, name, where, event.eigenvalue)
 
 
-def local_names(path: Path, point: int) -> list[str]:
+def local_names(path: Path, point: int, states: Sequence[str] = STATE_NAMES) -> list[str]:
     """Return the name of every eigenvalue's mode at a valid point, from participation there, in the path's order."""
     share, partner = participation(path, point), path.partners[point]
-    slots, chosen = slots_of(STATE_NAMES), assign(share, STATE_NAMES, partner)
+    slots, chosen = slots_of(states), assign(share, states, partner)
     names = []
     for place in range(len(partner)):
         pair = sorted({int(chosen[place]), int(chosen[partner[place]])})
-        parts: dict[str, float] = {s: float(x) for s, x in zip(STATE_NAMES, share[:, place], strict=True)}
+        parts: dict[str, float] = {s: float(x) for s, x in zip(states, share[:, place], strict=True)}
         names.append(mode_name(slots[pair[0]], slots[pair[1]] if len(pair) > 1 else None, parts))
     return names
 
