@@ -17,6 +17,7 @@ from tethership.cli import (
     explore,
     export,
     files,
+    fly,
     listing,
     modes,
     sweep,
@@ -55,6 +56,7 @@ def _root(
 
 
 app.command("dock", epilog=dock.EXAMPLE)(checked(dock.dock))
+app.command("fly", epilog=fly.EXAMPLE)(checked(fly.fly))
 app.command("trim", epilog=trim.EXAMPLE)(checked(trim.trim))
 app.command("modes", epilog=modes.EXAMPLE)(checked(modes.modes))
 app.command("sweep", epilog=sweep.EXAMPLE)(checked(sweep.sweep))

@@ -32,6 +32,8 @@ EXAMPLE = "Example: tethership modes --wind 9 --sensitivity pendulum"
 COLUMNS = ("name", "real", "imaginary", "frequency", "damping", "half_or_double_time", "period", "stable")
 """Of the table of modes, SI: λ [1/s], frequency [rad/s], times [s]."""
 
+LOOPS = ("open", "closed")
+
 PARTS = ("full", "nine", "longitudinal", "lateral")
 
 
@@ -40,8 +42,11 @@ def modes(
     wind: WindOption = None,
     formulation: FormulationOption = None,
     part: Annotated[
-        str, typer.Option(help="full (12 states), nine (position held), longitudinal or lateral.")
+        str, typer.Option(help="full (all states), nine (position held), longitudinal or lateral.")
     ] = "full",
+    loop: Annotated[
+        str, typer.Option(help="open (thrusters are inputs), or closed: with laws, actuators and sampling.")
+    ] = "open",
     sensitivity: Annotated[
         str | None, typer.Option(metavar="MODE", help="Also rank what moves this mode, e.g. pendulum.")
     ] = None,
@@ -59,12 +64,18 @@ def modes(
 
     if part not in PARTS:
         raise ConfigError(f"--part {part!r} is no part{suggestion(part, PARTS)} Allowed: {', '.join(PARTS)}")
+    if loop not in LOOPS:
+        raise ConfigError(f"--loop {loop!r} is none{suggestion(loop, LOOPS)} Allowed: {', '.join(LOOPS)}")
+    if loop == "closed" and sensitivity is not None:
+        raise ConfigError(
+            "--sensitivity is of the open loop; leave --loop closed out, or sweep a gain with --loop closed"
+        )
     loaded = chosen_scenario(scenario, wind, formulation, changes)
     writable_csv(csv)
     folder = None if out is None else writable_folder(out)
     point = balanced(loaded, json)
     with stage("linearise"):
-        model = _part(linearize(loaded, point), part)
+        model = _part(linearize(loaded, point, loop=loop), part)
         found = model.modes()
     ranked = None
     if sensitivity is not None:
@@ -73,6 +84,8 @@ def modes(
         with stage("sensitivities"):
             ranked = sensitivities(loaded, sensitivity, point)
     head = point_keys(point) | {"wind": loaded.config.wind.speed, "formulation": loaded.formulation}
+    told = [*point.warnings, *model.attributes.get("warnings", ())]
+    head |= {"loop": loop, "sample_time": model.sample_time or None, "warnings": told}
     result = head | summary(model, found) | ({} if ranked is None else {"sensitivity": _ranked(ranked)})
     if folder is not None:
         with stage("draw"):
@@ -89,7 +102,7 @@ def modes(
         title = f"{loaded.config.title}: wind {loaded.config.wind.speed:g} m/s, {loaded.formulation}"
         where = clearance_line(point.clearance_hull, point.clearance_cable)
         _print(found, ranked, f"{title}\n{where}".rstrip())
-        warn(point.warnings)
+        warn(told)
     if point.outcome is not TrimOutcome.converged:
         typer.echo(f"tethership: {point.message}", err=True)
         raise typer.Exit(NO_ANSWER)

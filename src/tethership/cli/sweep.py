@@ -52,6 +52,9 @@ def sweep(
             autocompletion=complete_parameter,
         ),
     ] = None,
+    loop: Annotated[
+        str, typer.Option(help="open (thrusters are inputs), or closed with the laws: a gain's root locus.")
+    ] = "open",
     figure: Annotated[int | None, typer.Option(help="Redraw figure 6 to 11 of the paper instead.")] = None,
     wind: WindOption = None,
     formulation: FormulationOption = None,
@@ -77,7 +80,7 @@ def sweep(
         axes = [_axis(loaded, text) for text in over or []]
         writable_folder(out)
         writable_csv(csv)
-        result, found = _swept(loaded, axes, out)
+        result, found = _swept(loaded, axes, out, loop)
     if csv is not None:
         names = list(dict.fromkeys(name for one in found for name in one.values))
         result["files"] += write_csv(csv, [*names, "track", "real", "imaginary", "outcome"], _csv_rows(found, names))
@@ -96,13 +99,15 @@ def _set(wind: float | None, changes: list[str] | None) -> dict[str, Any]:
     return parsed_changes(changes) | ({} if wind is None else {"wind.speed": wind})
 
 
-def _swept(scenario: Scenario, axes: list[dict[str, np.ndarray]], out: Path) -> tuple[dict[str, Any], list["Sweep"]]:
+def _swept(
+    scenario: Scenario, axes: list[dict[str, np.ndarray]], out: Path, loop: str = "open"
+) -> tuple[dict[str, Any], list["Sweep"]]:
     """Return the result of a sweep; writes root_locus.png and root_locus.html."""
     from tethership.analysis import sweep as compute
 
     with stage("sweep"):
-        found = compute(scenario, *axes)
-    head = {"wind": scenario.config.wind.speed, "formulation": scenario.formulation}
+        found = compute(scenario, *axes, loop=loop)
+    head = {"wind": scenario.config.wind.speed, "formulation": scenario.formulation, "loop": loop}
     result = head | summary(found)
     with stage("draw"):
         from tethership.view.linear.interactive_locus import interactive_root_locus, page

@@ -1,0 +1,195 @@
+"""What the commands that fly have in common: options, progress, files, metrics. Depends on: typer."""
+
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tethership.cli.common import NO_ANSWER, print_json, stage
+from tethership.cli.completion import complete_layers
+from tethership.cli.points import warn
+from tethership.cli.tables import Row, print_table, write_rows
+from tethership.results.files import write_together
+from tethership.scenario import Scenario
+
+if TYPE_CHECKING:
+    from tethership.simulation import Flight
+
+LayersOption = Annotated[
+    str | None,
+    typer.Option(
+        help="Of rewind,heading,navigation, by commas; none for SAS alone. Default: the scenario's.",
+        autocompletion=complete_layers,
+    ),
+]
+NoSasOption = Annotated[bool, typer.Option("--no-sas", help="Switch SAS/attitude off.")]
+
+
+def split(layers: str) -> tuple[str, ...]:
+    """Return the layers of a comma-separated list; `none` or nothing for none."""
+    names = tuple(name.strip() for name in layers.split(",") if name.strip())
+    return () if names == ("none",) else names
+
+
+class Stages:
+    """Progress of a flight on a terminal: compiling until the first call, then flying."""
+
+    def __init__(self, limit: float) -> None:
+        self.limit = limit
+        self.start = time.perf_counter()
+        self.compiled = False
+        self.shown = sys.stderr.isatty()
+        if self.shown:
+            typer.echo("  compile …", err=True, nl=False)
+
+    def __call__(self, reached: float) -> None:
+        """Show the time reached [s]."""
+        if not self.shown:
+            return
+        if not self.compiled:
+            self.compiled = True
+            typer.echo(f"\r  {'compile':<28} {time.perf_counter() - self.start:6.2f} s", err=True)
+            self.start = time.perf_counter()
+        typer.echo(f"\r  fly: {reached:7.1f} s of at most {self.limit:.0f} s", err=True, nl=False)
+
+    def done(self) -> None:
+        """Close the line."""
+        if self.shown:
+            typer.echo(f"\r  {'fly':<28} {time.perf_counter() - self.start:6.2f} s      ", err=True)
+
+
+def again(path: Path) -> tuple[Scenario, "Flight"]:
+    """Return scenario and flight of a stored input."""
+    from tethership.simulation import fly_again
+
+    stages = Stages(float("inf"))
+    scenario, flight = fly_again(path, stages)
+    stages.done()
+    return scenario, flight
+
+
+def tell(
+    scenario: Scenario, flight: "Flight", trim_outcome: str, out: Path, picture: str, csv: Path | None, json: bool
+) -> None:
+    """Write a flight's files, print its numbers or its JSON, and exit with 3 where it is no answer.
+
+    Parameters
+    ----------
+    scenario, flight
+        What was flown.
+    trim_outcome : str
+        How its start was trimmed.
+    out : Path
+        Folder.
+    picture : str
+        Name of the picture in it.
+    csv : Path or None
+        Table of the metrics.
+    json : bool
+        Print one JSON object and nothing else.
+    """
+    written = _written(flight, out, picture)
+    result = summary(scenario, flight) | {"trim_outcome": trim_outcome}
+    rows = _rows(result, flight)
+    result["files"] = [*written, *write_rows(csv, rows)]
+    if json:
+        print_json(result)
+    else:
+        _print(result, flight, rows)
+        warn(flight.warnings)
+    if not flight.outcome.is_answer:
+        raise typer.Exit(NO_ANSWER)
+
+
+def _written(flight: "Flight", out: Path, name: str) -> list[str]:
+    """Write flight, picture and replay in one go and return their paths; what cannot be drawn is taken away."""
+    files: dict[Path, str | bytes | None] = {out / "flight.nc": flight.content()}
+    picture, replay = out / name, out / "replay.html"
+    try:
+        files |= {picture: _picture(flight), replay: _replay(flight)}
+    except BaseException:  # an interruption or a fault of the drawing costs the pictures, never the flight
+        write_together(files | {picture: None, replay: None})
+        raise
+    return [str(path) for path in write_together(files)]
+
+
+def _picture(flight: "Flight") -> bytes | None:
+    """Return the picture; a flight too short to draw has none."""
+    from tethership.view import plot_docking
+    from tethership.view.picture import png
+
+    if flight.data.sizes["time"] < 2:
+        return None
+    with stage("draw"):
+        return png(plot_docking(flight), 120, flight.run)
+
+
+def _replay(flight: "Flight") -> str | None:
+    """Return the page of the replay; a flight too short to draw has none."""
+    from tethership.view.replay import replay_text
+
+    if flight.data.sizes["time"] < 2:
+        return None
+    with stage("replay"):
+        return replay_text(flight)
+
+
+def summary(scenario: Scenario, flight: "Flight") -> dict[str, Any]:
+    """Return the keys that scripts may rely on, SI, θ_rms in degrees."""
+    from tethership.scenario.wind_file import record_warning
+    from tethership.simulation.quasi_static import quasi_static_warning
+
+    flown = float(flight.data["time"][-1]) if flight.data.sizes["time"] else 0.0
+    return {
+        "outcome": flight.outcome.name,
+        "message": flight.outcome.value,
+        "verdict": flight.verdict,
+        "docking_time": flight.docking_time,
+        "flight_time": flown,
+        **flight.metrics,
+        "wind": scenario.config.wind.speed,
+        "layers": flight.attributes["layers"],
+        "sas": flight.attributes["sas"],
+        "formulation": scenario.formulation,
+        "limits": flight.attributes["limits"],
+        "steps": flight.attributes["steps"],
+        "limits_passed": flight.limits_passed,
+        "clearance_hull": flight.metrics["clearance_min"],
+        "clearance_cable": flight.metrics["cable_clearance_min"],
+        "warnings": [*([flight.verdict] if flight.reservations else []), *flight.warnings],
+        "cable_warning": quasi_static_warning(flight),
+        "wind_warning": record_warning(scenario.config.wind, flown),
+    }
+
+
+def _rows(result: dict[str, Any], flight: "Flight") -> list[Row]:
+    """Return the metrics as rows of a table."""
+    watched = zip(flight.attributes["limits"], result["seconds_above"], strict=True)
+    return [
+        Row("outcome", result["outcome"]),
+        Row("flight time", result["flight_time"], "s", ".2f"),
+        Row("largest tension", result["tension_max"], "N", ".1f"),
+        Row("mean tension", result["tension_mean"], "N", ".1f"),
+        Row("slowest rewind rate", result["rewind_rate_min"], "m/s", ".3f"),
+        *[Row(f"time above {limit:g} N", seconds, "s", ".2f") for limit, seconds in watched],
+        Row("actuator duty cycle ADC", result["ADC"], "1/s", ".3f"),
+        Row("control energy E", result["E"], "", ".3f"),
+        Row("pitch, root mean square", result["theta_rms"], "deg", ".2f"),
+        Row("least hull clearance", result["clearance_min"], "m", ".2f"),
+        Row("time saturated", result["saturated_seconds"], "s", ".2f"),
+        Row("jumps of the misalignment", result["misalignment_jumps"]),
+    ]
+
+
+def _print(result: dict[str, Any], flight: "Flight", rows: list[Row]) -> None:
+    """Print the metrics as a table."""
+    rewinds = (flight.attributes.get("stop") or {"rewind": True})["rewind"]
+    none = "constant rewind" if rewinds else "winches hold" if flight.config.cables else "no layers"
+    layers = " + ".join(result["layers"]) or none
+    sas = "SAS, " if result["sas"] else ""
+    print_table(rows, f"wind {result['wind']:g} m/s, {sas}{layers}, formulation {result['formulation']}")
+    typer.echo(f"{flight.verdict[0].upper()}{flight.verdict[1:]}. {flight.outcome.value}")
+    for path in result["files"]:
+        typer.echo(f"wrote {path}")

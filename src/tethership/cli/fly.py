@@ -1,0 +1,80 @@
+"""`tethership fly`: trim any scenario and fly it for a while, without docking."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tethership.cli.common import (
+    FormulationOption,
+    JsonOption,
+    OutOption,
+    ScenarioArgument,
+    SetOption,
+    WindOption,
+    chosen_scenario,
+    writable_folder,
+)
+from tethership.cli.completion import complete_solver
+from tethership.cli.flown import LayersOption, NoSasOption, Stages, split, tell
+from tethership.cli.points import trimmed_start
+from tethership.cli.tables import CsvOption, writable_csv
+from tethership.errors import ConfigError
+from tethership.scenario.load import read_solver
+
+EXAMPLE = "Example: tethership fly hover --time 30 --set 'gusts=[]' --out flights/hover"
+
+LONGEST = 36_000.0
+"""Longest flight [s]."""
+
+
+def fly(
+    scenario: ScenarioArgument = "hover",
+    time: Annotated[
+        float | None, typer.Option(help="How long to fly [s]; the scenario's time limit if left out.")
+    ] = None,
+    rewind: Annotated[
+        bool, typer.Option("--rewind", help="Let the winches take in cable, as dock does; else they hold.")
+    ] = False,
+    wind: WindOption = None,
+    formulation: FormulationOption = None,
+    layers: LayersOption = None,
+    no_sas: NoSasOption = False,
+    solver: Annotated[
+        str, typer.Option(help="adaptive, tight, fixed, or a path that ends in .toml.", autocompletion=complete_solver)
+    ] = "adaptive",
+    changes: SetOption = None,
+    out: OutOption = Path("out"),
+    csv: CsvOption = None,
+    json: JsonOption = False,
+) -> None:
+    """Trim a ship, free or on cables, and fly it under its laws; nothing docks and winches hold.
+
+    Writes flight.nc, flight.png and replay.html into --out. dock --from flies a flight.nc again.
+    """
+    if time is not None and not 0.0 < time <= LONGEST:
+        raise ConfigError(f"--time {time:g} is no time to fly; give a number of seconds above 0, at most {LONGEST:g}")
+    loaded = chosen_scenario(scenario, wind, formulation, changes)
+    names = None if layers is None else split(layers)
+    loaded.law(names)  # a wrong name is found before anything is computed
+    read_solver(solver)
+    writable_folder(out)
+    writable_csv(csv)
+    point = trimmed_start(loaded, json)
+    from tethership.simulation import fly as flown
+
+    stages = Stages(loaded.config.stop.time_limit if time is None else time)
+    flight = flown(
+        loaded,
+        point,
+        stop=time,
+        layers=names,
+        sas=False if no_sas else None,
+        rewind=rewind,
+        solver=solver,
+        progress=stages,
+    )
+    stages.done()
+    if point.saturated:
+        typer.echo(f"tethership: warning: the start is no equilibrium. {point.message}", err=True)
+    tell(loaded, flight, point.outcome.name, out, "flight.png", csv, json)
