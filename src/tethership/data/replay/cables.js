@@ -5,6 +5,7 @@ class Cables {
     this.scale = scale;
     this.group = new THREE.Group();
     this.points = flight.cables.length ? tracks.width("cable_curve") / 3 / flight.cables.length : 0;
+    this.anchors = [];
     this.lines = flight.cables.map((cable) => {
       const line = new THREE.Line2(new THREE.LineGeometry(), new THREE.LineMaterial({ linewidth: 3.2 }));
       line.frustumCulled = false;
@@ -15,6 +16,7 @@ class Cables {
       );
       anchor.position.set(...cable.anchor);
       this.group.add(line, anchor);
+      this.anchors.push(anchor);
       return line;
     });
     this.ends = [];
@@ -30,6 +32,7 @@ class Cables {
       line.visible = points.length >= 6 && points.every(Number.isFinite);
       if (!line.visible) return;
       line.geometry.setPositions(points);
+      this.anchors[cable].position.set(...points.slice(0, 3)); // it may move
       line.material.color.copy(this.scale.colour(tension[cable]));
       this.ends[cable] = [points.slice(0, 3), points.slice(-3)];
       this.colours[cable] = `#${line.material.color.getHexString()}`;
