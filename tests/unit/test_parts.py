@@ -407,3 +407,55 @@ def test_a_point_knows_its_scenario_and_another_ones_is_refused(docking):
 def test_a_stop_that_is_none(docking, stop):
     with pytest.raises((ts.ConfigError, TypeError)):
         ts.fly(docking, ts.trim(docking), stop=stop)
+
+
+def test_a_root_locus_of_a_gain_is_the_closed_loop_at_each_value(docking):
+    scenario = docking.changed({"control.layers": ["heading"]})
+    locus = ts.sweep(scenario, {"control.heading.gain": [2.0, 6.0]}, loop="closed")
+    for place, gain in enumerate((2.0, 6.0)):
+        here = scenario.changed({"control.heading.gain": gain})
+        wanted = ts.linearize(ts.trim(here), loop="closed").modes().eigenvalues
+        apart = np.abs(locus.eigenvalues[place][:, None] - wanted[None, :]).min(axis=1)
+        assert apart.max() < 1e-6
+    with pytest.raises(ts.ConfigError, match="the laws are sampled"):
+        ts.sweep(scenario.changed({"control.period": 0.1}), {"control.heading.gain": [2.0, 6.0]}, loop="closed")
+    with pytest.raises(ts.ConfigError, match="did you mean 'closed'"):
+        ts.sweep(scenario, {"control.heading.gain": [2.0, 6.0]}, loop="close")
+
+
+def test_a_channel_at_its_limit_is_told_and_its_loop_is_open(docking):
+    weak = {f"vehicle.thrusters.{thruster.name}.nominal_thrust": 8.0 for thruster in docking.config.vehicle.thrusters}
+    scenario = docking.changed({"wind.speed": 12.0, "control.layers": []} | weak)
+    point = ts.trim(scenario)
+    assert point.saturated
+    model = ts.linearize(point, loop="closed", require_equilibrium=False)
+    assert any(
+        point.saturated[0] in line and "so the loop is open there" in line for line in model.attributes["warnings"]
+    )
+
+
+def test_the_commands_fly_and_modes_of_the_closed_loop(tmp_path, capsys, monkeypatch):
+    import json
+
+    from tethership.cli import main
+
+    def command(*words):
+        monkeypatch.setattr("sys.argv", ["tethership", *words])
+        with pytest.raises(SystemExit) as caught:
+            main()
+        out, err = capsys.readouterr()
+        return caught.value.code, out, err
+
+    code, out, _ = command("fly", "hover", "--time", "2", "--json", "--out", str(tmp_path))
+    told = json.loads(out)
+    assert (code, told["outcome"], told["docking_time"]) == (0, "time_limit", None)
+    assert told["flight_time"] == pytest.approx(2.0)
+    code, _, err = command("fly", "hover", "--time", "-2", "--out", str(tmp_path))
+    assert (code, err.count("\n")) == (2, 1)
+    sampled = ("--set", "control.period=0.1s", "--set", "vehicle.thrusters.tail_down.lag=0.3s")
+    code, out, _ = command("modes", "--loop", "closed", "--json", *sampled)
+    told = json.loads(out)
+    assert (code, told["loop"], told["sample_time"]) == (0, "closed", 0.1)
+    assert "reached_tail_down" in told["states"]
+    code, _, err = command("modes", "--loop", "shut")
+    assert (code, err.count("\n")) == (2, 1)

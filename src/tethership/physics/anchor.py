@@ -79,5 +79,5 @@ class HarmonicMotion(AbstractAnchorMotion):
         return self.amplitude * pace * jnp.cos(pace * time + self.phase)
 
     def mean_velocity(self) -> Float[Array, "3"]:
-        """Return zero: the anchor stays about its place."""
+        """Return zero [m/s]: the anchor stays about its place."""
         return jnp.zeros(3)
