@@ -114,8 +114,8 @@ class AbstractLaw(eqx.Module):
     """A control law."""
 
     @abc.abstractmethod
-    def __call__(self, time: Float[Array, ""], measurement: Measurement, memory: Any) -> tuple[Asked, Any]:
-        """Return the correction (or what is asked by name) and the time derivative of the memory.
+    def __call__(self, time: Float[Array, ""], measurement: Measurement, memory: Any) -> tuple[Correction, Any]:
+        """Return the correction, or a `Request` by name, and the time derivative of the memory.
 
         Parameters
         ----------

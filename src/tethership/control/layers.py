@@ -30,7 +30,7 @@ class LayeredLaw(AbstractLaw):
 
     def __call__(
         self, time: Float[Array, ""], measurement: Measurement, memory: tuple[Any, ...]
-    ) -> tuple[Asked, tuple[Any, ...]]:
+    ) -> tuple[Any, tuple[Any, ...]]:
         """Return the sum of all corrections and every law's memory rate; arguments as in `AbstractLaw`."""
         total: Asked = Correction()
         rates = []

@@ -115,6 +115,16 @@ def converted(value: float, unit: str, si_unit: str) -> float:
     return found
 
 
+def in_unit(value: float, unit: str, wanted: str) -> float:
+    """Return a number in another unit, or raise ValueError that says why it is none; `SI_UNIT` means that of `wanted`."""
+    if unit == wanted:
+        return converted(value, SI_UNIT, "1")
+    if unit == SI_UNIT:
+        base = unit_registry().Quantity(1.0, wanted).to_base_units()
+        return converted(value, SI_UNIT, "1") / float(base.magnitude)
+    return converted(value, unit, wanted)
+
+
 def _by_unit(value: float, unit: str, si_unit: str) -> float:
     """Return a number in the SI unit by way of pint."""
     if len(unit) > LONGEST_UNIT or not UNIT.fullmatch(unit):
