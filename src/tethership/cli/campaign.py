@@ -13,8 +13,10 @@ from tethership.cli.common import (
     NO_ANSWER,
     FormulationOption,
     JsonOption,
+    LineOption,
     SetOption,
     WindOption,
+    line_change,
     parsed_changes,
     print_json,
 )
@@ -49,6 +51,7 @@ def campaign(
     confidence: Annotated[float, typer.Option(min=0.5, max=0.9999, help="Of the intervals.")] = 0.95,
     wind: WindOption = None,
     formulation: FormulationOption = None,
+    line: LineOption = None,
     changes: SetOption = None,
     out: Annotated[
         Path | None,
@@ -71,7 +74,7 @@ def campaign(
     writable_csv(csv)
     begun = time.perf_counter()
     with progress_bar(f"campaign {Path(name).stem}", resumed=True) as report:
-        varied = _scenario_changes(wind, formulation, changes)
+        varied = _scenario_changes(wind, formulation, changes, line)
         try:
             found = run_campaign(name, folder, own, varied, workers, scheduler, confidence, _counted(report))
         except KeyboardInterrupt:
@@ -109,14 +112,16 @@ def _counted(report: Report) -> Callable[[int, int], None]:
     return progress
 
 
-def _scenario_changes(wind: float | None, formulation: str | None, changes: list[str] | None) -> dict[str, Any]:
+def _scenario_changes(
+    wind: float | None, formulation: str | None, changes: list[str] | None, line: str | None
+) -> dict[str, Any]:
     """Return the scenario's changes by the flags."""
     found = parsed_changes(changes)
     if wind is not None:
         found["wind.speed"] = wind
     if formulation is not None:
         found["formulation"] = formulation
-    return found
+    return found if line is None else found | line_change(line)
 
 
 def _concluded(found: Any, folder: Path) -> dict[str, Any]:
@@ -129,6 +134,7 @@ def _concluded(found: Any, folder: Path) -> dict[str, Any]:
     return {
         "campaign": plan.name,
         "formulation": plan.scenario.formulation,
+        "line": plan.scenario.config.line_models(),
         "flown": found.flown,
         **answers,
         "exceedance": first["exceedance"],

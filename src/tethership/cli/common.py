@@ -12,11 +12,12 @@ from typing import Annotated, Any
 import typer
 
 from tethership.cli.completion import complete_formulation, complete_parameter, complete_scenario
-from tethership.errors import ConfigError, shown
+from tethership.errors import ConfigError, shown, suggestion
 from tethership.results.files import check_writable
 from tethership.scenario import Scenario, load_scenario
 from tethership.scenario.quantity import number_with_unit
 from tethership.scenario.reading import parse_json
+from tethership.scenario.schema import LINES
 
 WRONG_INPUT = 2
 """Exit code for wrong input."""
@@ -41,6 +42,10 @@ FormulationOption = Annotated[
     str | None,
     typer.Option(help="consistent or published: hull and cable laws together.", autocompletion=complete_formulation),
 ]
+LineOption = Annotated[
+    str | None,
+    typer.Option("--line", metavar="MODEL", help="catenary or published: the model of every cable's line."),
+]
 OutOption = Annotated[Path, typer.Option(help="Folder for the files that are written.")]
 MaybeOutOption = Annotated[Path | None, typer.Option(help="Folder for the files; without it none are written.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, nothing else.")]
@@ -55,7 +60,9 @@ SetOption = Annotated[
 ]
 
 
-def chosen_scenario(name: str, wind: float | None, formulation: str | None, changes: list[str] | None) -> Scenario:
+def chosen_scenario(
+    name: str, wind: float | None, formulation: str | None, changes: list[str] | None, line: str | None = None
+) -> Scenario:
     """Return the scenario with the flags applied; a flag wins over the file.
 
     Parameters
@@ -68,6 +75,8 @@ def chosen_scenario(name: str, wind: float | None, formulation: str | None, chan
         `consistent` or `published`.
     changes : list of str, optional
         `key=value` pairs.
+    line : str, optional
+        Model of every cable's line.
 
     Raises
     ------
@@ -81,7 +90,25 @@ def chosen_scenario(name: str, wind: float | None, formulation: str | None, chan
         values["wind.speed"] = wind
     if formulation is not None:
         values["formulation"] = formulation
-    return load_scenario(name, values)
+    return with_line(load_scenario(name, values), line)
+
+
+def with_line(scenario: Scenario, line: str | None) -> Scenario:
+    """Return a scenario with the model of every cable's line; raises ConfigError for an unknown one, or no cable."""
+    if line is None:
+        return scenario
+    change = line_change(line)
+    if not scenario.config.cables:
+        raise ConfigError(f"--line {line} needs a cable, and {scenario.name} has none; leave --line out")
+    return scenario.changed(change)
+
+
+def line_change(line: str) -> dict[str, Any]:
+    """Return the change that gives every cable a model of its line; raises ConfigError for an unknown one."""
+    models = tuple(LINES.values())
+    if line not in models:
+        raise ConfigError(f"--line {shown(line)} is no line{suggestion(line, models)} Allowed: {', '.join(models)}")
+    return {"cables.*.line": {"model": line}}
 
 
 def parsed_changes(changes: list[str] | None) -> dict[str, Any]:

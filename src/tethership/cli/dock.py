@@ -8,6 +8,7 @@ import typer
 from tethership.cli.common import (
     FormulationOption,
     JsonOption,
+    LineOption,
     OutOption,
     ScenarioArgument,
     SetOption,
@@ -31,6 +32,7 @@ def dock(
     scenario: ScenarioArgument = "docking",
     wind: WindOption = None,
     formulation: FormulationOption = None,
+    line: LineOption = None,
     layers: LayersOption = None,
     no_sas: NoSasOption = False,
     solver: Annotated[
@@ -47,8 +49,8 @@ def dock(
     Writes flight.nc (labelled data with the full input), docking.png (the paper's four panels) and replay.html (the
     flight in space, opens in a browser without a network) into --out.
     """
-    given = (scenario, wind, formulation, layers, changes, no_sas, solver)
-    if from_ is not None and given != ("docking", None, None, None, None, False, "adaptive"):
+    given = (scenario, wind, formulation, line, layers, changes, no_sas, solver)
+    if from_ is not None and given != ("docking", None, None, None, None, None, False, "adaptive"):
         raise ConfigError(
             "--from flies the stored input as it is; leave out the scenario and all flags but --out, --csv, --json"
         )
@@ -60,7 +62,7 @@ def dock(
         flown_scenario, flight = again(from_)
         trim_outcome = "stored"
     else:
-        flown_scenario = chosen_scenario(scenario, wind, formulation, changes)
+        flown_scenario = chosen_scenario(scenario, wind, formulation, changes, line)
         names = None if layers is None else split(layers)
         flown_scenario.law(names)  # a wrong name is found before anything is computed
         read_solver(solver)

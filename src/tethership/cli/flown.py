@@ -153,6 +153,7 @@ def summary(scenario: Scenario, flight: "Flight") -> dict[str, Any]:
         "layers": flight.attributes["layers"],
         "sas": flight.attributes["sas"],
         "formulation": scenario.formulation,
+        "line": scenario.config.line_models(),
         "limits": flight.attributes["limits"],
         "steps": flight.attributes["steps"],
         "limits_passed": flight.limits_passed,

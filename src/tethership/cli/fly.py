@@ -8,6 +8,7 @@ import typer
 from tethership.cli.common import (
     FormulationOption,
     JsonOption,
+    LineOption,
     OutOption,
     ScenarioArgument,
     SetOption,
@@ -38,6 +39,7 @@ def fly(
     ] = False,
     wind: WindOption = None,
     formulation: FormulationOption = None,
+    line: LineOption = None,
     layers: LayersOption = None,
     no_sas: NoSasOption = False,
     solver: Annotated[
@@ -54,7 +56,7 @@ def fly(
     """
     if time is not None and not 0.0 < time <= LONGEST:
         raise ConfigError(f"--time {time:g} is no time to fly; give a number of seconds above 0, at most {LONGEST:g}")
-    loaded = chosen_scenario(scenario, wind, formulation, changes)
+    loaded = chosen_scenario(scenario, wind, formulation, changes, line)
     names = None if layers is None else split(layers)
     loaded.law(names)  # a wrong name is found before anything is computed
     read_solver(solver)

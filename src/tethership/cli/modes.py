@@ -8,6 +8,7 @@ from tethership.cli.common import (
     NO_ANSWER,
     FormulationOption,
     JsonOption,
+    LineOption,
     MaybeOutOption,
     ScenarioArgument,
     SetOption,
@@ -41,6 +42,7 @@ def modes(
     scenario: ScenarioArgument = "docking",
     wind: WindOption = None,
     formulation: FormulationOption = None,
+    line: LineOption = None,
     part: Annotated[
         str, typer.Option(help="full (all states), nine (position held), longitudinal or lateral.")
     ] = "full",
@@ -70,7 +72,7 @@ def modes(
         raise ConfigError(
             "--sensitivity is of the open loop; leave --loop closed out, or sweep a gain with --loop closed"
         )
-    loaded = chosen_scenario(scenario, wind, formulation, changes)
+    loaded = chosen_scenario(scenario, wind, formulation, changes, line)
     writable_csv(csv)
     folder = None if out is None else writable_folder(out)
     point = balanced(loaded, json)
@@ -85,7 +87,12 @@ def modes(
             ranked = sensitivities(loaded, sensitivity, point)
     head = point_keys(point) | {"wind": loaded.config.wind.speed, "formulation": loaded.formulation}
     told = [*point.warnings, *model.attributes.get("warnings", ())]
-    head |= {"loop": loop, "sample_time": model.sample_time or None, "warnings": told}
+    head |= {
+        "line": loaded.config.line_models(),
+        "loop": loop,
+        "sample_time": model.sample_time or None,
+        "warnings": told,
+    }
     result = head | summary(model, found) | ({} if ranked is None else {"sensitivity": _ranked(ranked)})
     if folder is not None:
         with stage("draw"):

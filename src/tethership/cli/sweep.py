@@ -13,6 +13,7 @@ from tethership.cli.common import (
     NO_ANSWER,
     FormulationOption,
     JsonOption,
+    LineOption,
     OutOption,
     ScenarioArgument,
     SetOption,
@@ -58,6 +59,7 @@ def sweep(
     figure: Annotated[int | None, typer.Option(help="Redraw figure 6 to 11 of the paper instead.")] = None,
     wind: WindOption = None,
     formulation: FormulationOption = None,
+    line: LineOption = None,
     changes: SetOption = None,
     out: OutOption = Path("out"),
     csv: CsvOption = None,
@@ -76,7 +78,7 @@ def sweep(
         writable_csv(csv)
         result, found = studied("figures")(figure, formulation, _set(wind, changes), out)
     else:
-        loaded = chosen_scenario(scenario, wind, formulation, changes)
+        loaded = chosen_scenario(scenario, wind, formulation, changes, line)
         axes = [_axis(loaded, text) for text in over or []]
         writable_folder(out)
         writable_csv(csv)
@@ -107,7 +109,12 @@ def _swept(
 
     with stage("sweep"):
         found = compute(scenario, *axes, loop=loop)
-    head = {"wind": scenario.config.wind.speed, "formulation": scenario.formulation, "loop": loop}
+    head = {
+        "wind": scenario.config.wind.speed,
+        "formulation": scenario.formulation,
+        "line": scenario.config.line_models(),
+        "loop": loop,
+    }
     result = head | summary(found)
     with stage("draw"):
         from tethership.view.linear.interactive_locus import interactive_root_locus, page

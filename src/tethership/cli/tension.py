@@ -8,6 +8,7 @@ import typer
 from tethership.cli.common import (
     FormulationOption,
     JsonOption,
+    LineOption,
     MaybeOutOption,
     ScenarioArgument,
     SetOption,
@@ -52,6 +53,7 @@ def tension(
     ] = None,
     wind: WindOption = None,
     formulation: FormulationOption = None,
+    line: LineOption = None,
     changes: SetOption = None,
     out: MaybeOutOption = None,
     csv: CsvOption = None,
@@ -65,7 +67,7 @@ def tension(
     """
     if wind is not None and wind_vector is not None:
         raise ConfigError("--wind and --wind-vector both say what the wind is; give one of them")
-    loaded = chosen_scenario(scenario, wind, formulation, changes)
+    loaded = chosen_scenario(scenario, wind, formulation, changes, line)
     index = _cable_index(loaded, cable)
     chosen = loaded.config.cables[index]
     reach = chosen.length if length is None else length
@@ -74,12 +76,12 @@ def tension(
     writable_csv(csv)
     folder = None if out is None else writable_folder(out)
     place = np.array(chosen.anchor if anchor is None else anchor)
-    line = _Line(loaded, index, np.array(end), place, reach, anchor is not None)
+    between = _Line(loaded, index, np.array(end), place, reach, anchor is not None)
     with np.errstate(all="ignore"):  # what is not finite is told below
-        result = _computed(line, np.array(velocity), wind_vector, points)
+        result = _computed(between, np.array(velocity), wind_vector, points)
     if not np.isfinite(result["tension"]):
         with np.errstate(all="ignore"):
-            apart = float(np.linalg.norm(line.end - line.anchor))
+            apart = float(np.linalg.norm(between.end - between.anchor))
         raise SolveError(
             f"the tension between these ends is not finite: {reach:g} m of cable over {apart:.3g} m are beyond what "
             "can be computed; check --end, --anchor and --length"
@@ -198,6 +200,7 @@ def _computed(
         "lowest_point": found.lowest,
         "load": found.load,
         "formulation": scenario.formulation,
+        "line": scenario.config.line_models(),
         "angles": {"anchor": _elevation(found.anchor), "ship": _elevation(-np.asarray(found.ship))},
         "sag": _sag(np.asarray(fine)),
         "limits_passed": passed,

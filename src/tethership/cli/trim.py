@@ -9,6 +9,7 @@ from tethership.cli.common import (
     NO_ANSWER,
     FormulationOption,
     JsonOption,
+    LineOption,
     MaybeOutOption,
     ScenarioArgument,
     SetOption,
@@ -36,6 +37,7 @@ def trim(
     scenario: ScenarioArgument = "docking",
     wind: WindOption = None,
     formulation: FormulationOption = None,
+    line: LineOption = None,
     unknowns: Annotated[
         str | None,
         typer.Option(
@@ -55,7 +57,7 @@ def trim(
     from tethership.analysis import trim as solve
     from tethership.plant.state import STATE_NAMES
 
-    loaded = chosen_scenario(scenario, wind, formulation, changes)
+    loaded = chosen_scenario(scenario, wind, formulation, changes, line)
     writable_csv(csv)
     folder = None if out is None else writable_folder(out)
     names = None if unknowns is None else [name.strip() for name in unknowns.split(",")]
@@ -74,6 +76,7 @@ def trim(
         "state": state,
         "wind": loaded.config.wind.speed,
         "formulation": loaded.formulation,
+        "line": loaded.config.line_models(),
     }
     if folder is not None:
         write_atomically(folder / "trim.json", json_text(result))

@@ -27,7 +27,7 @@ __all__ = ["assemble", "build_environment", "build_hull", "build_ship", "build_s
 
 def _cable(config: CableConfig, formulation: str, shift: Float[Array, "3"]) -> Cable:
     law: AbstractTensionLaw
-    if formulation == "published":
+    if config.line_model(formulation) == "published":
         law = PublishedTension(*map(jnp.asarray, (config.stiffness, config.joint_start, config.joint_end)))
     else:
         law = ElasticCatenary(jnp.asarray(config.stiffness))

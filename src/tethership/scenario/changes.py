@@ -43,10 +43,8 @@ def _expanded(document: Document, path: list[str], dotted: str, origin: str) -> 
             break
         place = _enter(place, step, dotted, origin)
     if not isinstance(place, list) or not place:
-        what = "an empty list" if isinstance(place, list) else "no list"
-        raise ConfigError(
-            f"{origin}: {shown(dotted)}: {'.'.join(path[:here])} is {what}; * stands for the items of one"
-        )
+        what = f"{'.'.join(path[:here])} is {'an empty list' if isinstance(place, list) else 'no list'}"
+        raise ConfigError(f"{origin}: {shown(dotted)}: {what}; * stands for the items of one")
     names = [".".join([*path[:here], str(i), *path[here + 1 :]]) for i in range(len(place))]
     return [name for first in names for name in _expanded(document, first.split("."), first, origin)]
 

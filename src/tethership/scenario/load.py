@@ -160,7 +160,8 @@ def load_scenario(name: str = "docking", changes: Mapping[str, Any] | None = Non
         A packaged name (see `list_packaged`) or a path that ends in `.toml`.
     changes : mapping, optional
         Dotted name → value, e.g. ``{"wind.speed": 12.0, "vehicle.body.mass": 130.0}``; numbers in SI and radians.
-        Items of a list go by name or number: ``cables.nose.length``, ``gusts.0.start``.
+        Items of a list go by name or number, all of them by a star: ``cables.nose.length``, ``gusts.0.start``,
+        ``vehicle.thrusters.*.lag``.
 
     Raises
     ------

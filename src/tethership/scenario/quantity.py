@@ -116,7 +116,7 @@ def converted(value: float, unit: str, si_unit: str) -> float:
 
 
 def in_unit(value: float, unit: str, wanted: str) -> float:
-    """Return a number in another unit, or raise ValueError that says why it is none; `SI_UNIT` means that of `wanted`."""
+    """Return a number in another unit, or raise ValueError that says why it is none; `SI_UNIT` is that of `wanted`."""
     if unit == wanted:
         return converted(value, SI_UNIT, "1")
     if unit == SI_UNIT:

@@ -84,6 +84,24 @@ class HarmonicMotionConfig(Table):
 AnchorMotionConfig = Annotated[SteadyMotionConfig | HarmonicMotionConfig, Field(discriminator="model")]
 
 
+class CatenaryLine(Table):
+    """A line in equilibrium: the extensible catenary, one load per length from the chord."""
+
+    model: Literal["catenary"]
+
+
+class PublishedLine(Table):
+    """The paper's line: catenary, joint and spring by its elongation."""
+
+    model: Literal["published"]
+
+
+LineConfig = Annotated[CatenaryLine | PublishedLine, Field(discriminator="model")]
+
+LINES = {"consistent": "catenary", "published": "published"}
+"""Line of each formulation, where a cable does not say its own."""
+
+
 class CableConfig(Table):
     """One cable; `tether_point` from the origin of the body axes, `anchor` in ground axes.
 
@@ -103,8 +121,13 @@ class CableConfig(Table):
     cross_flow_drag_coefficient: Annotated[float, Quantity("1", low=0.0)]
     longitudinal_drag_coefficient: Annotated[float, Quantity("1", low=0.0)]
     load_reference: Annotated[float, Quantity("1", low=0.0, high=1.0)] = 0.5
+    line: LineConfig | None = None
     anchor_motion: AnchorMotionConfig | None = None
     winch: WinchConfig
+
+    def line_model(self, formulation: str) -> str:
+        """Return the name of its line's model: its own, or that of the formulation."""
+        return LINES[formulation] if self.line is None else self.line.model
 
     @model_validator(mode="after")
     def _joint(self) -> "CableConfig":
@@ -215,6 +238,10 @@ class ScenarioConfig(Table):
     def watched_tensions(self) -> list[float]:
         """Return the four tensions that are watched [N]: control threshold, tear, envelope tensile, cable break."""
         return list(self.watched_limits().values())
+
+    def line_models(self) -> dict[str, dict[str, str]]:
+        """Return the model of each cable's line, by the cable's name."""
+        return {cable.name: {"model": cable.line_model(self.formulation)} for cable in self.cables}
 
     def has_ground(self) -> bool:
         """Return whether it is known where the ground is: at the height given, or below the lowest anchor."""
