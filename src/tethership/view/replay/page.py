@@ -4,8 +4,6 @@ The scripts are in `data/replay`, one concern a file, and share one scope; three
 `data/replay/vendor`, whose README says how they are built.
 """
 
-import html
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -16,7 +14,7 @@ from tethership.results.seal import RUN
 from tethership.simulation import Flight
 from tethership.view import style
 from tethership.view.replay.scene import scene
-from tethership.view.report.page_file import page_text, write_page_text
+from tethership.view.report.page_file import rendered, write_page_text
 
 SCRIPTS = (
     "tracks",
@@ -40,9 +38,6 @@ SCRIPTS = (
     "main",
 )
 """Own scripts, in the order in which they are read."""
-
-POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:"
-"""What the page may load: nothing that is not in it."""
 
 MOST_FLIGHTS = 2
 """Flights side by side."""
@@ -107,22 +102,7 @@ def _named(flights: Flights) -> list[tuple[str, Flight]]:
 def replay_page(scenes: list[dict[str, Any]], runs: Sequence[str] = ()) -> str:
     """Return the page of one or two scenes of `view.replay.scene`, with the ids of the runs they show."""
     data = {"flights": scenes, "colours": _colours(), "version": __version__}
-    text = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
-    own = "\n".join(_packaged(f"{name}.js") for name in SCRIPTS)
-    palette = page_text("report", "palette.css")
-    title = html.escape(scenes[0]["title"])
-    return (
-        f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f'<meta name="generator" content="tethership {__version__}">\n'
-        f'<meta name="tethership-{RUN}" content="{" ".join(runs)}">\n<title>{title}: replay</title>\n'
-        f"<style>\n{_packaged('vendor/uplot.min.css')}\n{palette}{_packaged('replay.css')}</style>\n</head>\n"
-        f"{_packaged('body.html')}"
-        f"{_licensed('three')}{_licensed('uplot')}"
-        f'<script type="application/json" id="flights">{text}</script>\n'
-        f'<script>\n(() => {{\n"use strict";\n{own}\n}})();\n</script>\n</body>\n</html>\n'
-    )
+    return rendered("replay/replay.html", data=data, run=RUN, runs=runs, scripts=SCRIPTS)
 
 
 def _colours() -> dict[str, Any]:
@@ -140,14 +120,3 @@ def _colours() -> dict[str, Any]:
         "arrows": style.ARROWS,
         "limits": style.LIMITS,
     }
-
-
-def _licensed(name: str) -> str:
-    """Return a library of the vendor's folder as a script with its licence."""
-    licence = _packaged(f"vendor/{name}.LICENSE").replace("*/", "* /")
-    return f"<script>\n/*!\n{licence}*/\n{_packaged(f'vendor/{name}.min.js')}\n</script>\n"
-
-
-def _packaged(name: str) -> str:
-    """Return the text of a packaged file of the replay."""
-    return page_text("replay", name)

@@ -1,27 +1,30 @@
 """A report: one self-contained page that reads like a paper's results and opens without a network.
 
-Depends on: plotly, view.report.content, view.report.parts.
+Depends on: jinja2, plotly, view.report.
 """
 
+import functools
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from jinja2 import Environment
+from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
-from tethership._version import __version__
 from tethership.view.report.content import VERDICTS, Cell, Figure, Section, Table
-from tethership.view.report.page_file import page_text, write_page_text
-from tethership.view.report.parts import Placed, every_section, labelled, number_sections, section_html
-from tethership.view.report.text import Places, escaped, marked, plain
+from tethership.view.report.page_file import templates, write_page_text
+from tethership.view.report.parts import every_section, judged, labelled, looks, number_sections
+from tethership.view.report.text import marked, number, plain
 
 __all__ = ["VERDICTS", "Cell", "Figure", "Section", "Table", "write_report"]
 
-POLICY = (
-    "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; "
-    "img-src data: blob:; font-src data:; worker-src blob:"
-)
-"""What the page may load: nothing that is not in it."""
+LONG = 24
+"""Rows from which a table scrolls inside its box."""
+
+SIGNS = {"good": "✓", "fair": "≈", "bad": "✗"}
+"""Set before a verdict, so that it is read without colour."""
 
 
 def write_report(
@@ -65,79 +68,28 @@ def write_report(
     'report.html'
     """
     placed = number_sections(sections)
-    page = _page(title, abstract, placed, footer)
+    explored = any(figure.plot for part in every_section(placed) for _, figure in part.figures)
+    page = (
+        _templates()
+        .get_template("report/report.html")
+        .render(
+            title=title,
+            abstract=abstract,
+            placed=placed,
+            places=labelled(placed),
+            footer={name: value for name, value in footer.items() if value is not None},
+            plotly=Markup(get_plotlyjs()) if explored else None,
+        )
+    )
     return write_page_text(path, page)
 
 
-def _page(title: str, abstract: Sequence[str], placed: list[Placed], footer: Mapping[str, Any]) -> str:
-    """Return the page."""
-    places = labelled(placed)
-    body = "\n".join(section_html(part, places) for part in placed)
-    explored = any(figure.interactive is not None for part in every_section(placed) for _, figure in part.figures)
-    library = f'<script type="text/plain" id="plotly">{get_plotlyjs()}</script>\n' if explored else ""
-    summary = "\n".join(f"<p>{marked(text, places)}</p>" for text in abstract)
-    return (
-        f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f'<meta name="generator" content="tethership {__version__}">\n<title>{plain(title)}</title>\n'
-        f"<script>{_packaged('watch.js')}</script>\n<style>\n{_packaged('palette.css')}{_packaged('report.css')}</style>\n</head>\n<body>\n"
-        f"<header>\n<h1>{marked(title)}</h1>\n{_abstract(summary)}</header>\n"
-        f"{_contents(placed, places)}\n<main>\n{body}\n</main>\n{_footer(footer)}\n"
-        f"{library}<script>\n{_packaged('explore.js')}</script>\n</body>\n</html>\n"
-    )
-
-
-def _packaged(name: str) -> str:
-    """Return the text of a packaged style or script."""
-    return page_text("report", name)
-
-
-def _abstract(summary: str) -> str:
-    """Return the abstract, nothing if it is empty."""
-    return f'<div class="abstract" role="doc-abstract">\n{summary}\n</div>\n' if summary else ""
-
-
-def _contents(placed: list[Placed], places: Places) -> str:
-    """Return the table of contents: sections, and in them their tables and figures."""
-    if not placed:
-        return ""
-    return (
-        '<nav aria-label="Contents">\n<details class="contents" open>\n<summary>Contents</summary>\n'
-        f"{_entries(placed, places)}\n</details>\n</nav>"
-    )
-
-
-def _entries(placed: list[Placed], places: Places) -> str:
-    """Return the entries of some sections."""
-    entries = []
-    for part in placed:
-        inner = [_entry(f"table-{n}", f"Table {n}", table.caption) for n, table in part.tables]
-        inner += [_entry(f"figure-{n}", f"Figure {n}", figure.caption) for n, figure in part.figures]
-        below = f'\n<ul class="items">\n{"".join(inner)}</ul>' if inner else ""
-        deeper = f"\n{_entries(part.sections, places)}" if part.sections else ""
-        entries.append(
-            f'<li><a href="#{part.anchor}"><span class="number">{part.number}</span> {plain(part.section.title)}</a>'
-            f"{below}{deeper}</li>\n"
-        )
-    return f"<ol>\n{''.join(entries)}</ol>"
-
-
-def _entry(anchor: str, name: str, caption: str) -> str:
-    """Return the entry of a table or figure: its name and the first sentence of its caption."""
-    first = plain(caption).split(". ")[0].rstrip(".")
-    return f'<li><a href="#{anchor}">{name}</a> {first}</li>\n'
-
-
-def _footer(footer: Mapping[str, Any]) -> str:
-    """Return the footer."""
-    entries = "\n".join(
-        f"<div><dt>{escaped(name)}</dt><dd>{marked(str(value))}</dd></div>"
-        for name, value in footer.items()
-        if value is not None
-    )
-    if not entries:
-        return ""
-    return (
-        f'<footer aria-labelledby="provenance">\n<h2 id="provenance">Provenance</h2>\n<dl>\n{entries}\n</dl>\n</footer>'
-    )
+@functools.cache
+def _templates() -> Environment:
+    """Return the packaged templates with what a report's need besides."""
+    found = templates()
+    found.filters |= {"marked": marked, "plain": plain, "number": number, "looks": looks, "judged": judged}
+    found.filters["first_sentence"] = lambda caption: plain(caption).split(". ")[0].rstrip(".")
+    found.tests["truth"] = lambda cell: isinstance(cell, (bool, np.bool_))
+    found.globals |= {"signs": SIGNS, "long": LONG}
+    return found

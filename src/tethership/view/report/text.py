@@ -1,16 +1,14 @@
-"""Text and numbers of a report as HTML: everything escaped, minus signs and powers as in print. Depends on nothing."""
+"""Text and numbers of a report as HTML: all escaped, minus signs and powers as in print. Depends on: markupsafe."""
 
-import html
 import math
 import numbers
 import re
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from tethership.errors import ConfigError, suggestion
+from markupsafe import Markup
 
-NONE = "–"
-"""Shown where there is no value."""
+from tethership.errors import ConfigError, suggestion
 
 DIGITS = 4
 """Significant digits of numbers."""
@@ -18,10 +16,12 @@ DIGITS = 4
 THIN = "\N{NARROW NO-BREAK SPACE}"
 """Between thousands, from 10 000 on."""
 
-_CODE = re.compile(r"`([^`]+)`")
-_BOLD = re.compile(r"\*\*(.+?)\*\*")
-_LABEL = re.compile(r"\[\[([^\[\]]+)\]\]")
-_ADDRESS = re.compile(r"https?://[^\s<>\"'`]*[^\s<>\"'`.,;:!?)\]]")
+_MARK = re.compile(
+    r"`(?P<code>[^`]+)`|\*\*(?P<bold>[^`]+?)\*\*|\[\[(?P<label>[^\[\]`]+)\]\]"
+    r"|(?P<address>https?://[^\s<>\"'`]*[^\s<>\"'`.,;:!?)\]])"
+)
+"""No Markdown: its single stars and underscores would eat those of names such as `vehicle.fins.*.area`."""
+
 _NUMBER = re.compile(r"[<>≤≥≈±]?\s*[+−-]?\d[\d\s.,]*(e[+-]?\d+)?\s*%?", re.IGNORECASE)
 
 
@@ -44,12 +44,7 @@ Places = Mapping[str, Place]
 """Places by label."""
 
 
-def escaped(text: Any) -> str:
-    """Return text in which nothing is HTML."""
-    return html.escape(str(text), quote=True)
-
-
-def marked(text: str, places: Places | None = None) -> str:
+def marked(text: str, places: Places | None = None) -> Markup:
     """Return a text as HTML, with its code, bold words, addresses and, where there are places, its labels.
 
     Parameters
@@ -64,40 +59,42 @@ def marked(text: str, places: Places | None = None) -> str:
     ConfigError
         A label is not that of a table, figure or section.
     """
-    parts = _CODE.split(text)
-    return "".join(
-        f"<code>{escaped(part)}</code>" if index % 2 else _prose(part, places) for index, part in enumerate(parts)
-    )
+    done, end = Markup(), 0
+    for found in _MARK.finditer(text):
+        done += text[end : found.start()]
+        done += _element(found, places)
+        end = found.end()
+    return done + text[end:]
+
+
+def _element(found: re.Match[str], places: Places | None) -> Markup | str:
+    """Return what a mark stands for; a string is still to be escaped."""
+    match found.lastgroup, found[found.lastgroup or 0]:
+        case "code", words:
+            return Markup("<code>{}</code>").format(words)
+        case "bold", words:
+            return Markup("<strong>{}</strong>").format(marked(words, places))
+        case "address", words:
+            return Markup('<a href="{0}">{0}</a>').format(words)
+        case _, label if places is not None:
+            if label not in places:
+                known = suggestion(label, places)
+                raise ConfigError(f"the report has no table, figure or section labelled {label!r}{known}")
+            return Markup('<a href="#{}">{}</a>').format(places[label].anchor, places[label].name)
+    return found[0]
 
 
 def plain(text: str) -> str:
-    """Return a text without its marks, escaped: for titles and alternatives of pictures."""
-    return escaped(_BOLD.sub(r"\1", _CODE.sub(r"\1", text)))
+    """Return a text without its marks: for titles and alternatives of pictures."""
+    return _MARK.sub(lambda found: found["code"] or found["bold"] or found[0], text)
 
 
-def _prose(text: str, places: Places | None) -> str:
-    """Return a text without code as HTML."""
-    pieces, end = [], 0
-    for found in _ADDRESS.finditer(text):
-        pieces += [escaped(text[end : found.start()]), f'<a href="{escaped(found[0])}">{escaped(found[0])}</a>']
-        end = found.end()
-    done = _BOLD.sub(r"<strong>\1</strong>", "".join([*pieces, escaped(text[end:])]))
-    return done if places is None else _LABEL.sub(lambda found: _link(html.unescape(found[1]), places), done)
-
-
-def _link(label: str, places: Places) -> str:
-    """Return a link to what a label stands for."""
-    if label not in places:
-        raise ConfigError(f"the report has no table, figure or section labelled {label!r}{suggestion(label, places)}")
-    return f'<a href="#{places[label].anchor}">{places[label].name}</a>'
-
-
-def number(value: float) -> str:
+def number(value: float) -> Markup:
     """Return a number as HTML: four significant digits, whole ones in full, a power of ten where it is far from 1."""
     if math.isnan(value):
-        return "not a number"
+        return Markup("not a number")
     if math.isinf(value):
-        return "∞" if value > 0 else "−∞"
+        return Markup("∞" if value > 0 else "−∞")
     size = abs(value)
     if isinstance(value, numbers.Integral):
         text = f"{size:,}"
@@ -111,7 +108,7 @@ def number(value: float) -> str:
         mantissa, power = f"{size:.{DIGITS - 2}e}".split("e")
         text = f"{mantissa} × 10<sup>{str(int(power)).replace('-', '−')}</sup>"
     text = text.replace(",", "" if size < 9999.5 else THIN)
-    return f"−{text}" if value < 0 else text
+    return Markup(f"−{text}" if value < 0 else text)
 
 
 def is_number(value: Any) -> bool:
