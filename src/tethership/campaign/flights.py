@@ -150,6 +150,7 @@ class Flyer:
         _check_ticks(names)
         self._names, self._longest = tuple(names), step
         check_lags(scenario, step)
+        scenario.check_trust()
         parameters = [find_parameter(known, name, scenario.name) for name in names]
         self._places = tuple(parameter.places for parameter in parameters)
         flat = [place for group in self._places for place in group]

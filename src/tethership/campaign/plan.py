@@ -67,6 +67,8 @@ class Work(NamedTuple):
         Flights of one call.
     step : float
         h [s].
+    trusted : bool
+        Whether laws of one's own that the scenario names may be run.
     """
 
     scenario: str
@@ -75,6 +77,7 @@ class Work(NamedTuple):
     example: tuple[float, ...]
     lanes: int
     step: float
+    trusted: bool = False
 
 
 class Plan(NamedTuple):
@@ -125,7 +128,9 @@ class Plan(NamedTuple):
     def work(self) -> Work:
         """Return what all batches have in common."""
         document, example = json.dumps(self.scenario.document), tuple(map(float, self.values[0, 0]))
-        return Work(document, self.scenario.name, self.names, example, self.lanes, self.config.step)
+        return Work(
+            document, self.scenario.name, self.names, example, self.lanes, self.config.step, self.scenario.trusted
+        )
 
     def batch(self, number: int) -> Batch:
         """Return one batch by its number."""
@@ -150,7 +155,12 @@ class Plan(NamedTuple):
         return hashlib.sha256(text.encode() + self.values.tobytes()).hexdigest()
 
 
-def make_plan(name: str, changes: dict[str, Any] | None = None, scenario_changes: dict[str, Any] | None = None) -> Plan:
+def make_plan(
+    name: str,
+    changes: dict[str, Any] | None = None,
+    scenario_changes: dict[str, Any] | None = None,
+    trust: bool = False,
+) -> Plan:
     """Return a campaign made ready.
 
     Parameters
@@ -161,6 +171,8 @@ def make_plan(name: str, changes: dict[str, Any] | None = None, scenario_changes
         Of the campaign's own keys: samples, seed, sampling, …
     scenario_changes : mapping, optional
         Of the scenario, by dotted name, as in `load_scenario`; what is set here does not vary.
+    trust : bool
+        Let laws of one's own that the scenario names be run.
 
     Raises
     ------
@@ -179,7 +191,9 @@ def make_plan(name: str, changes: dict[str, Any] | None = None, scenario_changes
         raise ConfigError(
             f"{name}: a grid flies every combination of its levels; leave out --samples or change the levels"
         )
-    own = load_scenario(_beside(name, config.scenario), _wind_beside(name, config.changes, scenario_changes or {}))
+    own = load_scenario(
+        _beside(name, config.scenario), _wind_beside(name, config.changes, scenario_changes or {}), trust
+    )
     scenario = own.changed({"control.layers": list(LAYERS)})  # a layer is off by its gains: see `layer_switches`
     _check_limits(config, name)
     sample = draw(config, scenario, name)

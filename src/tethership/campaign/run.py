@@ -46,6 +46,7 @@ def run_campaign(
     scheduler: str | None = None,
     confidence: float = 0.95,
     progress: Progress | None = None,
+    trust: bool = False,
 ) -> Campaign:
     """Fly a campaign, or go on with it, and say what its flights say.
 
@@ -67,6 +68,8 @@ def run_campaign(
         Of the intervals.
     progress : callable, optional
         Called with the flights that are done and their total.
+    trust : bool
+        Let laws of one's own that the scenario names be run.
 
     Raises
     ------
@@ -78,7 +81,8 @@ def run_campaign(
     """
     if workers is not None and scheduler is not None:
         raise ConfigError("workers and scheduler exclude each other; give one")
-    plan = make_plan(name, dict(changes or {}), dict(scenario_changes or {}))
+    plan = make_plan(name, dict(changes or {}), dict(scenario_changes or {}), trust)
+    plan.scenario.check_trust()
     owner(Path(folder), plan)
     with held(Path(folder)):
         store = CampaignStore(Path(folder), plan)

@@ -12,6 +12,7 @@ from tethership.errors import ConfigError
 from tethership.scenario import Scenario, scenario_at
 from tethership.scenario.control_schema import LAYERS
 from tethership.scenario.load import from_document
+from tethership.scenario.own_laws import find_beside
 from tethership.simulation import Flight, dock
 
 COMPARED = ("docking_time", "tension_max", "tension_mean", "ADC", "E", "theta_rms")
@@ -20,7 +21,9 @@ COMPARED = ("docking_time", "tension_max", "tension_mean", "ADC", "E", "theta_rm
 
 @functools.lru_cache(maxsize=2)
 def _scenario(work: Work) -> Scenario:
-    return from_document(json.loads(work.scenario), work.scenario_name)
+    if work.trusted:
+        find_beside(work.scenario_name)
+    return from_document(json.loads(work.scenario), work.scenario_name, trusted=work.trusted)
 
 
 @functools.lru_cache(maxsize=2)

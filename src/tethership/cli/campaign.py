@@ -15,6 +15,7 @@ from tethership.cli.common import (
     JsonOption,
     LineOption,
     SetOption,
+    TrustOption,
     WindOption,
     line_change,
     parsed_changes,
@@ -52,6 +53,7 @@ def campaign(
     wind: WindOption = None,
     formulation: FormulationOption = None,
     line: LineOption = None,
+    trust: TrustOption = False,
     changes: SetOption = None,
     out: Annotated[
         Path | None,
@@ -76,7 +78,7 @@ def campaign(
     with progress_bar(f"campaign {Path(name).stem}", resumed=True) as report:
         varied = _scenario_changes(wind, formulation, changes, line)
         try:
-            found = run_campaign(name, folder, own, varied, workers, scheduler, confidence, _counted(report))
+            found = run_campaign(name, folder, own, varied, workers, scheduler, confidence, _counted(report), trust)
         except KeyboardInterrupt:
             raise SolveError(f"interrupted; what is flown is in {folder}: run the same command to go on") from None
     result = _concluded(found, folder)

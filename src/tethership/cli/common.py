@@ -46,6 +46,7 @@ LineOption = Annotated[
     str | None,
     typer.Option("--line", metavar="MODEL", help="catenary or published: the model of every cable's line."),
 ]
+TrustOption = Annotated[bool, typer.Option("--trust", help="Let code of one's own that the file names be run.")]
 OutOption = Annotated[Path, typer.Option(help="Folder for the files that are written.")]
 MaybeOutOption = Annotated[Path | None, typer.Option(help="Folder for the files; without it none are written.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, nothing else.")]
@@ -61,7 +62,12 @@ SetOption = Annotated[
 
 
 def chosen_scenario(
-    name: str, wind: float | None, formulation: str | None, changes: list[str] | None, line: str | None = None
+    name: str,
+    wind: float | None,
+    formulation: str | None,
+    changes: list[str] | None,
+    line: str | None = None,
+    trust: bool = False,
 ) -> Scenario:
     """Return the scenario with the flags applied; a flag wins over the file.
 
@@ -77,6 +83,8 @@ def chosen_scenario(
         `key=value` pairs.
     line : str, optional
         Model of every cable's line.
+    trust : bool
+        Let laws of one's own that the file names be run.
 
     Raises
     ------
@@ -90,7 +98,7 @@ def chosen_scenario(
         values["wind.speed"] = wind
     if formulation is not None:
         values["formulation"] = formulation
-    return with_line(load_scenario(name, values), line)
+    return with_line(load_scenario(name, values, trust), line)
 
 
 def with_line(scenario: Scenario, line: str | None) -> Scenario:

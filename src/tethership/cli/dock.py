@@ -12,6 +12,7 @@ from tethership.cli.common import (
     OutOption,
     ScenarioArgument,
     SetOption,
+    TrustOption,
     WindOption,
     chosen_scenario,
     writable_folder,
@@ -33,6 +34,7 @@ def dock(
     wind: WindOption = None,
     formulation: FormulationOption = None,
     line: LineOption = None,
+    trust: TrustOption = False,
     layers: LayersOption = None,
     no_sas: NoSasOption = False,
     solver: Annotated[
@@ -59,10 +61,10 @@ def dock(
     if from_ is not None:
         writable_folder(out)
         writable_csv(csv)
-        flown_scenario, flight = again(from_)
+        flown_scenario, flight = again(from_, trust)
         trim_outcome = "stored"
     else:
-        flown_scenario = chosen_scenario(scenario, wind, formulation, changes, line)
+        flown_scenario = chosen_scenario(scenario, wind, formulation, changes, line, trust)
         names = None if layers is None else split(layers)
         flown_scenario.law(names)  # a wrong name is found before anything is computed
         read_solver(solver)

@@ -60,12 +60,12 @@ class Stages:
             typer.echo(f"\r  {'fly':<28} {time.perf_counter() - self.start:6.2f} s      ", err=True)
 
 
-def again(path: Path) -> tuple[Scenario, "Flight"]:
+def again(path: Path, trust: bool) -> tuple[Scenario, "Flight"]:
     """Return scenario and flight of a stored input."""
     from tethership.simulation import fly_again
 
     stages = Stages(float("inf"))
-    scenario, flight = fly_again(path, stages)
+    scenario, flight = fly_again(path, stages, trust)
     stages.done()
     return scenario, flight
 

@@ -12,6 +12,7 @@ from tethership.cli.common import (
     OutOption,
     ScenarioArgument,
     SetOption,
+    TrustOption,
     WindOption,
     chosen_scenario,
     writable_folder,
@@ -40,6 +41,7 @@ def fly(
     wind: WindOption = None,
     formulation: FormulationOption = None,
     line: LineOption = None,
+    trust: TrustOption = False,
     layers: LayersOption = None,
     no_sas: NoSasOption = False,
     solver: Annotated[
@@ -56,7 +58,7 @@ def fly(
     """
     if time is not None and not 0.0 < time <= LONGEST:
         raise ConfigError(f"--time {time:g} is no time to fly; give a number of seconds above 0, at most {LONGEST:g}")
-    loaded = chosen_scenario(scenario, wind, formulation, changes, line)
+    loaded = chosen_scenario(scenario, wind, formulation, changes, line, trust)
     names = None if layers is None else split(layers)
     loaded.law(names)  # a wrong name is found before anything is computed
     read_solver(solver)

@@ -12,6 +12,7 @@ from tethership.cli.common import (
     MaybeOutOption,
     ScenarioArgument,
     SetOption,
+    TrustOption,
     WindOption,
     chosen_scenario,
     json_text,
@@ -43,6 +44,7 @@ def modes(
     wind: WindOption = None,
     formulation: FormulationOption = None,
     line: LineOption = None,
+    trust: TrustOption = False,
     part: Annotated[
         str, typer.Option(help="full (all states), nine (position held), longitudinal or lateral.")
     ] = "full",
@@ -72,7 +74,7 @@ def modes(
         raise ConfigError(
             "--sensitivity is of the open loop; leave --loop closed out, or sweep a gain with --loop closed"
         )
-    loaded = chosen_scenario(scenario, wind, formulation, changes, line)
+    loaded = chosen_scenario(scenario, wind, formulation, changes, line, trust)
     writable_csv(csv)
     folder = None if out is None else writable_folder(out)
     point = balanced(loaded, json)

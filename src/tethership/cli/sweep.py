@@ -17,6 +17,7 @@ from tethership.cli.common import (
     OutOption,
     ScenarioArgument,
     SetOption,
+    TrustOption,
     WindOption,
     chosen_scenario,
     pair,
@@ -60,6 +61,7 @@ def sweep(
     wind: WindOption = None,
     formulation: FormulationOption = None,
     line: LineOption = None,
+    trust: TrustOption = False,
     changes: SetOption = None,
     out: OutOption = Path("out"),
     csv: CsvOption = None,
@@ -78,7 +80,7 @@ def sweep(
         writable_csv(csv)
         result, found = studied("figures")(figure, formulation, _set(wind, changes), out)
     else:
-        loaded = chosen_scenario(scenario, wind, formulation, changes, line)
+        loaded = chosen_scenario(scenario, wind, formulation, changes, line, trust)
         axes = [_axis(loaded, text) for text in over or []]
         writable_folder(out)
         writable_csv(csv)

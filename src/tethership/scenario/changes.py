@@ -95,7 +95,7 @@ def _set_component(entry: dict[str, Any], last: str, value: Any, what: str) -> N
 
 def is_share(path: Sequence[str]) -> bool:
     """Return whether the values under a path are a law's shares: plain numbers without a unit."""
-    return path[:1] == ["control"] and path[-1].endswith("share")
+    return path[:1] == ["control"] and (path[-1].endswith("share") or path[-1] == "numbers")
 
 
 def _is_number(value: Any) -> bool:

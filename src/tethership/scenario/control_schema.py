@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from pydantic import Field, field_validator, model_validator
 
 from tethership.errors import suggestion
+from tethership.scenario.names import Word, check_apart
 from tethership.scenario.quantity import Quantity, Table
 
 LAYERS = ("rewind", "heading", "navigation")
@@ -81,6 +82,17 @@ class NavigationConfig(Table):
     vertical_share: Share = Field(default_factory=dict)
 
 
+class OwnLawConfig(Table):
+    """A law of one's own: `model = "module:Class"`, a subclass of `tethership.AbstractLaw`, and its numbers by name.
+
+    Its numbers are given to the class as they are, in units of its own. It runs only when told so (`--trust`).
+    """
+
+    name: Word
+    model: Annotated[str, Field(pattern=r"^[A-Za-z_][\w.]*:[A-Za-z_]\w*$", max_length=200)]
+    numbers: dict[str, float] = Field(default_factory=dict)
+
+
 class ControlConfig(Table):
     """Which laws act and with what gains.
 
@@ -98,6 +110,7 @@ class ControlConfig(Table):
     period: Annotated[float, Quantity("s", positive=True)] | None = None
     delay: Annotated[float, Quantity("s", low=0.0)] | None = None
     allocation: dict[str, Share] = Field(default_factory=dict)
+    laws: tuple[OwnLawConfig, ...] = ()
     attitude: AttitudeConfig = AttitudeConfig()
     rewind: RewindConfig = RewindConfig()
     heading: HeadingConfig = HeadingConfig()
@@ -107,6 +120,12 @@ class ControlConfig(Table):
     @classmethod
     def _known_layers(cls, names: tuple[str, ...]) -> tuple[str, ...]:
         return check_layers(names)
+
+    @field_validator("laws")
+    @classmethod
+    def _named_apart(cls, laws: tuple[OwnLawConfig, ...]) -> tuple[OwnLawConfig, ...]:
+        check_apart((*LAYERS, "attitude", *(law.name for law in laws)), "laws")
+        return laws
 
     @field_validator("delay")
     @classmethod

@@ -19,6 +19,7 @@ from tethership.control import (
 from tethership.control.sampling import Sampling
 from tethership.plant import Command
 from tethership.scenario.control_schema import Share, Table
+from tethership.scenario.own_laws import make_law
 from tethership.scenario.schema import ScenarioConfig
 
 HEADING = {"full": HeadingLaw, "sine": SineHeadingLaw, "line": LineHeadingLaw}
@@ -46,7 +47,8 @@ def build_law(config: ScenarioConfig, switched: bool = False) -> LayeredLaw:
     acting = (("attitude",) if control.sas else ()) + control.layers
     names = LAWS if switched and config.cables else (("attitude",) if switched else acting)
     laws = tuple(_law(config, name) for name in names)
-    return LayeredLaw(laws, names, jnp.asarray([float(name in acting) for name in names]) if switched else None)
+    switches = jnp.asarray([float(name in acting) for name in names]) if switched else None
+    return LayeredLaw(laws, names, switches).joined({law.name: make_law(law) for law in control.laws})
 
 
 def _law(config: ScenarioConfig, name: str) -> AbstractLaw:

@@ -19,6 +19,7 @@ from tethership.scenario.changes import Document, change
 from tethership.scenario.control_schema import check_layers
 from tethership.scenario.laws import build_law
 from tethership.scenario.messages import first_problem
+from tethership.scenario.own_laws import find_beside
 from tethership.scenario.quantity import Table
 from tethership.scenario.reading import parse_toml, read_text
 from tethership.scenario.schema import ScenarioConfig
@@ -43,12 +44,15 @@ class Scenario:
         The file as read, vehicle and changes included: enough to load it again, bit for bit.
     system : TetheredAirship
         The plant.
+    trusted : bool
+        Whether laws of one's own that it names may be run.
     """
 
     name: str
     config: ScenarioConfig
     document: Document
     system: TetheredAirship
+    trusted: bool = False
 
     @property
     def formulation(self) -> str:
@@ -80,8 +84,9 @@ class Scenario:
         Raises
         ------
         ConfigError
-            A layer is not known.
+            A layer is not known, or the scenario names code of one's own and is not trusted.
         """
+        self.check_trust()
         control = self.config.control
         try:
             names = control.layers if layers is None else check_layers(layers)
@@ -94,7 +99,16 @@ class Scenario:
 
     def changed(self, changes: Mapping[str, Any]) -> "Scenario":
         """Return the scenario with values changed; see `load_scenario`."""
-        return from_document(self.document, self.name, changes)
+        return from_document(self.document, self.name, changes, self.trusted)
+
+    def check_trust(self) -> None:
+        """Raise ConfigError where the scenario names code of one's own, and nobody said that it may run."""
+        if self.config.control.laws and not self.trusted:
+            named = ", ".join(law.model for law in self.config.control.laws)
+            raise ConfigError(
+                f"{self.name} names code of one's own, {named}, which runs only when told so: --trust, or "
+                "load_scenario(..., trust=True)"
+            )
 
 
 KINDS = ("scenarios", "vehicles", "solvers", "campaigns")
@@ -151,7 +165,7 @@ def validated(model: type[ModelType], document: Document, origin: str) -> ModelT
         raise ConfigError(first_problem(error, origin, document)) from error
 
 
-def load_scenario(name: str = "docking", changes: Mapping[str, Any] | None = None) -> Scenario:
+def load_scenario(name: str = "docking", changes: Mapping[str, Any] | None = None, trust: bool = False) -> Scenario:
     """Return a scenario.
 
     Parameters
@@ -162,6 +176,8 @@ def load_scenario(name: str = "docking", changes: Mapping[str, Any] | None = Non
         Dotted name → value, e.g. ``{"wind.speed": 12.0, "vehicle.body.mass": 130.0}``; numbers in SI and radians.
         Items of a list go by name or number, all of them by a star: ``cables.nose.length``, ``gusts.0.start``,
         ``vehicle.thrusters.*.lag``.
+    trust : bool
+        Let laws of one's own that the file names be run (`control.laws`).
 
     Raises
     ------
@@ -196,20 +212,24 @@ def load_scenario(name: str = "docking", changes: Mapping[str, Any] | None = Non
         raise ConfigError(f"{origin}: changes is {shown(own_changes)}; give a table, [changes], of dotted names")
     for key, value in {**own_changes, **changes}.items():
         change(document, key, value, origin)
-    scenario = from_document(document, origin)
+    scenario = from_document(document, origin, trusted=trust)
+    if trust:
+        find_beside(origin)
     doubt = scenario.config.vehicle.drag_warning()
     if doubt:
         warnings.warn(doubt, TethershipWarning, stacklevel=2)
     return scenario
 
 
-def from_document(document: Document, origin: str, changes: Mapping[str, Any] | None = None) -> Scenario:
+def from_document(
+    document: Document, origin: str, changes: Mapping[str, Any] | None = None, trusted: bool = False
+) -> Scenario:
     """Return the scenario of a document whose vehicle is included, with changes as in `load_scenario`."""
     document = copy.deepcopy(document)
     for key, value in (changes or {}).items():
         change(document, key, value, origin)
     config = validated(ScenarioConfig, document, origin)
-    return Scenario(origin, config, document, assemble(config))
+    return Scenario(origin, config, document, assemble(config), trusted)
 
 
 def read_solver(name: str = "adaptive") -> SolverConfig:

@@ -201,7 +201,8 @@ def scenario_at(scenario: Scenario, values: Mapping[str, float]) -> Scenario:
     """
     known = list_parameters(scenario.config)
     chosen = [find_parameter(known, name, scenario.name) for name in values]
-    return from_document(_document_at(scenario, chosen, list(values.values())), scenario.name)
+    document = _document_at(scenario, chosen, list(values.values()))
+    return from_document(document, scenario.name, trusted=scenario.trusted)
 
 
 def check_values(scenario: Scenario, parameters: Sequence[Parameter], values: Sequence[float]) -> None:

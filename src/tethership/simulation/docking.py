@@ -11,6 +11,7 @@ from tethership.control import AbstractLaw
 from tethership.errors import ConfigError, TethershipWarning
 from tethership.scenario import Scenario, SolverConfig
 from tethership.scenario.load import from_document
+from tethership.scenario.own_laws import find_beside
 from tethership.simulation.events import Stop
 from tethership.simulation.flight import Flight
 from tethership.simulation.fly import fly
@@ -70,7 +71,7 @@ def dock(
     )
 
 
-def fly_again(path: str | Path, progress: Progress | None = None) -> tuple[Scenario, Flight]:
+def fly_again(path: str | Path, progress: Progress | None = None, trust: bool = False) -> tuple[Scenario, Flight]:
     """Fly the stored input of a flight file again, to the same numbers.
 
     Parameters
@@ -79,6 +80,8 @@ def fly_again(path: str | Path, progress: Progress | None = None) -> tuple[Scena
         A file that `Flight.save` wrote.
     progress : callable, optional
         As in `dock`.
+    trust : bool
+        Let laws of one's own that its scenario names be run.
 
     Raises
     ------
@@ -86,7 +89,9 @@ def fly_again(path: str | Path, progress: Progress | None = None) -> tuple[Scena
         The file is no flight, of another version, or its input is not readable.
     """
     stored = Flight.load(path).attributes
-    scenario = from_document(stored["scenario"], stored["scenario_name"])
+    scenario = from_document(stored["scenario"], stored["scenario_name"], trusted=trust)
+    if trust:
+        find_beside(stored["scenario_name"])
     if stored["own_laws"]:
         raise ConfigError(
             f"{path} was flown with a law of one's own, which no file holds: {', '.join(stored['own_laws'])}"

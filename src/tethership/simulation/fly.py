@@ -122,9 +122,9 @@ def _law(
         if layers is not None or sas is not None or own:
             raise ConfigError("fly: a law is given, and layers, sas or own_laws too; give the law alone, or only those")
         return law, (), False
-    taken = set(LAWS) & set(own)
+    taken = {*LAWS, *(law.name for law in scenario.config.control.laws)} & set(own)
     if taken:
-        raise ConfigError(f"a law of one's own is named {taken.pop()!r}, as one of the package; give it another name")
+        raise ConfigError(f"a law of one's own is named {taken.pop()!r}, as one of the package or the file; give it another name")
     names = scenario.layers if layers is None else tuple(layers)
     active = scenario.config.control.sas if sas is None else sas
     layered: LayeredLaw = scenario.law(names, active, switched=True)

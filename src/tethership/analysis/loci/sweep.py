@@ -303,6 +303,7 @@ def _states(scenario: Scenario, loop: str) -> tuple[str, ...]:
             "sweep: the laws are sampled (control.period), and loci are of continuous ones; leave control.period out, "
             "or ask modes --loop closed at each point"
         )
+    scenario.check_trust()
     ship = scenario.system.ship
     none = Command(jnp.zeros(ship.thrusters.count), jnp.zeros(ship.fins.count))
     closed = build_loop(scenario.config, scenario.system, none)
