@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: dock test lint docs gallery bench figures validation clean
+.PHONY: dock test test-all lint docs gallery bench figures validation clean
 
 dock: $(VENV)/.installed
 	$(BIN)/tethership dock --out out
@@ -15,6 +15,9 @@ dock: $(VENV)/.installed
 	@echo "  $(BIN)/tethership explore    a local page: change the wind, the cable or a gain and see what follows"
 
 test: $(VENV)/.installed-dev
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not slow"
+
+test-all: $(VENV)/.installed-dev
 	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 lint: $(VENV)/.installed-dev

@@ -1,10 +1,14 @@
 """Shared starts: a scenario, its trim and one flight, computed once per worker."""
 
+import contextlib
+import ctypes
 import gc
+import os
 import shutil
 import subprocess
 from pathlib import Path
 
+import equinox as eqx
 import jax
 import pytest
 
@@ -14,14 +18,38 @@ MAPS = Path("/proc/self/maps")
 MOST_MAPS = 20_000
 """Every compiled program keeps hundreds of memory maps; Linux allows a process 65 530 and XLA aborts beyond."""
 
+STATM = Path("/proc/self/statm")
+MOST_MEMORY = 1.6e9
+"""Resident memory [byte] above which compiled programs are forgotten: two workers then stay below 5 GB together."""
+
+SLOW_FIXTURES = {"browser", "browsed", "cluster", "study"}
+"""What makes a test slow: Chromium, a Dask cluster, the paper's study. Other slow tests carry the mark themselves."""
+
+
+def pytest_collection_modifyitems(items):
+    """Mark as slow what asks for a slow fixture."""
+    for item in items:
+        if SLOW_FIXTURES & set(getattr(item, "fixturenames", ())):
+            item.add_marker(pytest.mark.slow)
+
+
+def resident():
+    """Return the memory of this process that lies in RAM [byte]; 0 where the system does not say."""
+    return int(STATM.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") if STATM.exists() else 0
+
 
 @pytest.fixture(autouse=True, scope="module")
 def _room_for_programs():
-    """Forget compiled programs before a process has no maps left; they come back from the compilation cache."""
+    """Forget compiled programs before a process has no maps or too much memory; the compilation cache has them."""
     yield
-    if MAPS.exists() and MAPS.read_bytes().count(b"\n") > MOST_MAPS:
+    before = resident()
+    if before > MOST_MEMORY or (MAPS.exists() and MAPS.read_bytes().count(b"\n") > MOST_MAPS):
+        eqx.clear_caches()
         jax.clear_caches()
         gc.collect()
+        with contextlib.suppress(OSError, AttributeError):  # glibc keeps what is freed until it is asked
+            ctypes.CDLL("libc.so.6").malloc_trim(0)
+        print(f"compiled programs forgotten: {before / 1e9:.2f} -> {resident() / 1e9:.2f} GB")
 
 
 @pytest.fixture(scope="session")

@@ -89,6 +89,7 @@ def blocks(page: Path) -> int:
     return len(re.findall(r"^```(?:python|sh|toml)$", page.read_text(encoding="utf-8"), re.MULTILINE))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", [p for p in WRITTEN if blocks(p)], ids=lambda p: str(p.relative_to(ROOT)))
 def test_page(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -100,6 +101,7 @@ def test_page(page, tmp_path, monkeypatch):
 WITH_EXAMPLES = [path for path in SOURCE.rglob("*.py") if ">>> " in path.read_text(encoding="utf-8")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", WITH_EXAMPLES, ids=lambda p: p.stem)
 def test_docstrings(path, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -117,6 +119,7 @@ globals().update({{key: value for key, value in main.items() if key.startswith((
 """
 
 
+@pytest.mark.slow
 def test_reference_has_every_name_and_its_types(tmp_path):
     """Public names and their methods, also those that a user writes in a class of one's own, with their types."""
     pytest.importorskip("sphinx")

@@ -115,6 +115,7 @@ def test_every_case_has_its_own_turbulence(whole):
     assert len(np.unique(theta)) == 144
 
 
+@pytest.mark.slow
 def test_killed_and_started_again_it_ends_bit_identical(whole, tmp_path, small):
     folder = tmp_path / "layers"
     command = [*COMMAND, "campaign", small, "--out", str(folder), "--workers", "1", "--json"]
@@ -254,6 +255,7 @@ def end(processes):
         process.wait()
 
 
+@pytest.mark.slow
 def test_a_worker_without_the_package_is_said_so(tmp_path, small):
     pytest.importorskip("distributed")
     scheduler, common = start_scheduler(tmp_path)

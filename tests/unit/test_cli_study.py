@@ -108,6 +108,7 @@ def test_wrong_input(arguments, message, tmp_path):
         raise result.exception
 
 
+@pytest.mark.slow
 def test_identify(tmp_path):
     """A search that is far too small still gives all keys and a vehicle that flies."""
     few = ["--power", "5", "--population", "8", "--generations", "1", "--left-out", "0", "--rounds", "2"]
@@ -119,6 +120,7 @@ def test_identify(tmp_path):
     assert ts.trim(scenario).outcome is not ts.TrimOutcome.no_equilibrium
 
 
+@pytest.mark.slow
 def test_tune(tmp_path):
     """Never worse than the gains it starts from; the scenario it writes flies with the gains it tells."""
     few = ["--flights", "8", "--population", "8", "--generations", "1"]

@@ -3,6 +3,7 @@
 import copy
 import dataclasses
 import io
+import itertools
 import json
 import subprocess
 import sys
@@ -86,7 +87,13 @@ def test_six_axes_in_four_panels(figure):
         "View from top",
         "Time histories",
     ]
-    assert figure.axes[0].get_subplotspec() is not None
+    north, east, top, *histories = (axes.get_position() for axes in figure.axes)
+    assert north.x1 < east.x0  # two above, and below them the histories left of the view from top
+    assert (north.y0, north.y1) == pytest.approx((east.y0, east.y1))
+    assert top.y1 < east.y0
+    assert all(one.y1 < north.y0 and one.x1 < top.x0 for one in histories)
+    assert all(upper.y0 > lower.y1 for upper, lower in itertools.pairwise(histories))
+    assert figure.axes[3].get_shared_x_axes().joined(figure.axes[3], figure.axes[5])
 
 
 def test_title_says_what_was_flown(figure):

@@ -45,14 +45,23 @@ def residual(plant: TetheredAirship, state: State, command: Command) -> Float[Ar
     return sum((load.as_vector() for load in loads.values()), -left)
 
 
-def drift(plant: TetheredAirship, state: State) -> Float[Array, "motions"]:
-    """Return the rates of what must stand still: Euler angles [rad/s] and, on a cable, x_P beside the anchor [m/s]."""
-    turning = euler_rates(state.attitude, state.rates)
+def drift(plant: TetheredAirship, state: State, turning: Float[Array, "3"] | None = None) -> Float[Array, "motions"]:
+    """Return the rates of what must stand still: Euler angles [rad/s] and, on a cable, x_P beside the anchor [m/s].
+
+    Parameters
+    ----------
+    plant, state
+        The ship.
+    turning : Float[Array, "3"], optional
+        Rates of φ, θ, ψ that a manoeuvre has [rad/s]: what differs from them must stand still.
+    """
+    turns = euler_rates(state.attitude, state.rates)
+    turns = turns if turning is None else turns - turning
     if not plant.cables:
-        return turning
+        return turns
     moving = rotation_matrix(state.attitude) @ state.velocity
     drawn = plant.anchor_velocity()
-    return jnp.concatenate([turning, moving if drawn is None else moving - drawn])
+    return jnp.concatenate([turns, moving if drawn is None else moving - drawn])
 
 
 def residual_limit(plant: TetheredAirship) -> Float[Array, ""]:

@@ -1,6 +1,6 @@
 """What a scenario file may say: air, ground, cables, start, laws, stop and limits. Depends on: scenario.quantity."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -146,6 +146,9 @@ class TrimConfig(Table):
     `velocity` is over the ground, in ground axes; where position or attitude are looked for, the search starts
     there. With `hold = "tether_point"` the first cable's tether point is put at `elongation` times its length
     from the anchor, at `elevation` and `bearing` from there.
+
+    A free ship in calm air may turn steadily: `turn_rate` is ψ̇, with φ, θ, speed and height constant. `pull_up_rate` is
+    θ̇ of a pull-up, a balance of the instant. p, q, r follow from them.
     """
 
     hold: Literal["tether_point", "reference_point"] = "tether_point"
@@ -156,6 +159,8 @@ class TrimConfig(Table):
     position: Point | None = None
     velocity: Annotated[Vector, Quantity("m/s", depth=1)] = (0.0, 0.0, 0.0)
     attitude: Annotated[Vector, Quantity("rad", depth=1)] = (0.0, 0.0, 0.0)
+    turn_rate: Annotated[float, Quantity("rad/s", low=-1.0, high=1.0)] | None = None
+    pull_up_rate: Annotated[float, Quantity("rad/s", low=-1.0, high=1.0)] | None = None
 
 
 class StartConfig(Table):
@@ -216,6 +221,10 @@ class ScenarioConfig(Table):
                 f"limits.cable_break {given:g} N is not the breaking_force {weakest:g} N; leave it out of limits"
             )
         self.control.check_channels([part.name for part in (*self.vehicle.thrusters, *self.vehicle.fins)])
+        rates = [name for name in ("turn_rate", "pull_up_rate") if getattr(self.trim, name) is not None]
+        if rates and (self.cables or getattr(self.wind, "speed", 0.0) != 0.0):
+            what = "without a cable" if self.cables else "in calm air (wind.speed 0)"
+            raise ValueError(f"trim.{rates[0]}: only a free ship {what} turns steadily; leave it out")
         under_way = {
             cable.anchor_motion.velocity if isinstance(cable.anchor_motion, SteadyMotionConfig) else (0.0, 0.0, 0.0)
             for cable in self.cables
@@ -226,6 +235,13 @@ class ScenarioConfig(Table):
         if not self.cables and set(self.control.layers) & {"rewind", "heading", "navigation"}:
             raise ValueError(f"layers {list(self.control.layers)} need a cable, and there is none")
         return self
+
+    def turning(self) -> tuple[Any, Any, Any] | None:
+        """Return the rates of φ, θ, ψ that the trim's manoeuvre has [rad/s]; None for none."""
+        trim = self.trim
+        if trim.turn_rate is None and trim.pull_up_rate is None:
+            return None
+        return (0.0, *(0.0 if rate is None else rate for rate in (trim.pull_up_rate, trim.turn_rate)))
 
     def watched_limits(self) -> dict[str, float]:
         """Return the four tensions that are watched [N] by the names of `results.limits`."""

@@ -124,7 +124,9 @@ def _law(
         return law, (), False
     taken = {*LAWS, *(law.name for law in scenario.config.control.laws)} & set(own)
     if taken:
-        raise ConfigError(f"a law of one's own is named {taken.pop()!r}, as one of the package or the file; give it another name")
+        raise ConfigError(
+            f"a law of one's own is named {taken.pop()!r}, as one of the package or the file; give it another name"
+        )
     names = scenario.layers if layers is None else tuple(layers)
     active = scenario.config.control.sas if sas is None else sas
     layered: LayeredLaw = scenario.law(names, active, switched=True)

@@ -69,9 +69,11 @@ def begin(loop: ClosedLoop, stop: StopConditions, state: State) -> tuple[Array, 
 
 
 @eqx.filter_jit
-def _balance(plant: TetheredAirship, state: State, command: Command) -> tuple[Array, Array]:
+def _balance(
+    plant: TetheredAirship, state: State, command: Command, turning: Float[Array, "3"] | None
+) -> tuple[Array, Array]:
     """Return what a point leaves over in the mean air of a plant [N, N m], and the rates of what must stand still."""
-    return residual(plant.at_mean(), state, command), drift(plant, state)
+    return residual(plant.at_mean(), state, command), drift(plant, state, turning)
 
 
 def check_point(scenario: Scenario, point: Start) -> None:
@@ -81,7 +83,9 @@ def check_point(scenario: Scenario, point: Start) -> None:
     -----
     Ten times what a trim may leave: a stored or continued point may differ from one found anew by its rounding.
     """
-    left, moving = (np.asarray(part) for part in _balance(scenario.system, point.state, point.command))
+    turning = scenario.config.turning()
+    given = None if turning is None else jnp.asarray(turning)
+    left, moving = (np.asarray(part) for part in _balance(scenario.system, point.state, point.command, given))
     limit = 10.0 * float(residual_limit(scenario.system))
     worst = max(np.abs(left).max() / limit, np.abs(moving).max() / (10.0 * DRIFT_LIMIT))
     if not worst <= 1.0:

@@ -3,6 +3,7 @@
 from tethership.spatial.constants import SEA_LEVEL_DENSITY, STANDARD_GRAVITY
 from tethership.spatial.linear import solve_symmetric
 from tethership.spatial.rotations import (
+    body_rates,
     euler_rate_matrix,
     euler_rates,
     horizontal_unit,
@@ -16,6 +17,7 @@ __all__ = [
     "SEA_LEVEL_DENSITY",
     "STANDARD_GRAVITY",
     "Wrench",
+    "body_rates",
     "euler_rate_matrix",
     "euler_rates",
     "horizontal_unit",

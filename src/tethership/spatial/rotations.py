@@ -61,6 +61,20 @@ def euler_rates(attitude: Float[Array, "3"], rates: Float[Array, "3"]) -> Float[
     return euler_rate_matrix(attitude) @ rates
 
 
+def body_rates(attitude: Float[Array, "3"], euler: Float[Array, "3"]) -> Float[Array, "3"]:
+    """Return ω = (p, q, r) [rad/s] for rates of φ, θ, ψ [rad/s]: Eq. 6 the other way, regular everywhere."""
+    phi, theta, _ = attitude
+    s_phi, c_phi, s_theta, c_theta = jnp.sin(phi), jnp.cos(phi), jnp.sin(theta), jnp.cos(theta)
+    roll, pitch, yaw = euler
+    return jnp.stack(
+        [
+            roll - yaw * s_theta,
+            pitch * c_phi + yaw * s_phi * c_theta,
+            -pitch * s_phi + yaw * c_phi * c_theta,
+        ]
+    )
+
+
 def skew(vector: Float[Array, "3"]) -> Float[Array, "3 3"]:
     """Return the matrix of the cross product: skew(a) b = a × b, in the units and axes of a."""
     x, y, z = vector

@@ -148,7 +148,8 @@ def linearize(
         States as `STATE_NAMES` (ground velocity and rates in body axes, Euler angles, position in ground axes), then
         those of actuators that lag, and in a closed loop those of the laws; inputs
         are throttles [-], deflections [rad], the wind's change [m/s] and rate [m/s²] in ground axes, lengths [m];
-        outputs as `LinearModel` lists them, differentiated exactly whatever the route.
+        outputs as `LinearModel` lists them, differentiated exactly whatever the route. About a steady turn the nine
+        states without position, whose coefficients are constant.
 
     Raises
     ------
@@ -178,7 +179,7 @@ def linearize(
     exact, comparable, residual, mass = _exact(plant, vector, inputs)
     _check_dividable(np.asarray(mass), float(state.attitude[1]))
     if require_equilibrium:
-        _check_equilibrium(plant, state, np.asarray(residual))
+        _check_equilibrium(plant, state, np.asarray(residual), _turning(system))
     matrices = _by_route(route, exact, plant, vector, inputs)
     names, units = _inputs(system)
     first_length = len(names) - len(plant.cables)
@@ -203,6 +204,8 @@ def linearize(
         if not isinstance(system, Scenario):
             raise ConfigError("linearize: a closed loop needs a scenario, which says its laws; a bare plant has none")
         return closed_model(system, model, state, command, law, length_states)
+    if _turning(system) is not None:  # heading and place go round: what stays are the other states
+        return model.without_position()
     return _with_lengths(model, plant) if length_states else model
 
 
@@ -221,9 +224,17 @@ def _check_dividable(mass: np.ndarray, pitch: float) -> None:
         )
 
 
-def _check_equilibrium(plant: TetheredAirship, state: State, residual: np.ndarray) -> None:
+def _turning(system: Scenario | TetheredAirship) -> Float[Array, "3"] | None:
+    """Return the rates of φ, θ, ψ of a scenario's manoeuvre [rad/s]; None for none."""
+    turning = system.config.turning() if isinstance(system, Scenario) else None
+    return None if turning is None else jnp.asarray(turning)
+
+
+def _check_equilibrium(
+    plant: TetheredAirship, state: State, residual: np.ndarray, turning: Float[Array, "3"] | None
+) -> None:
     """Raise ConfigError where a point is not in equilibrium."""
-    limit, moving = float(residual_limit(plant)), np.asarray(drift(plant, state))
+    limit, moving = float(residual_limit(plant)), np.asarray(drift(plant, state, turning))
     if not np.isfinite(residual).all():
         raise ConfigError("linearize: the point has loads that are not finite; check its state")
     force, moment = np.abs(residual[:3]).max(), np.abs(residual[3:]).max()

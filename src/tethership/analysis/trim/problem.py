@@ -65,6 +65,11 @@ def ask(
             f"trim: the tether point is held, so north, east and down follow; take out {', '.join(sorted(followers))} "
             'or set trim.hold = "reference_point"'
         )
+    rates = (set(names) | set(fixed or {})) & {"p", "q", "r"}
+    if rates and scenario.config.turning() is not None:
+        raise ConfigError(
+            f"trim: turn_rate and pull_up_rate say what p, q and r are; take out {', '.join(sorted(rates))}"
+        )
     places = find_places(tuple(fixed or ()), thrusters, fins)
     values = jnp.asarray(list((fixed or {}).values()), dtype=float)
     return Question(find_unknowns(names, thrusters, fins), hold, "psi" in names, places, values)
@@ -97,7 +102,9 @@ def pose(config: ScenarioConfig, plant: TetheredAirship, question: Question) -> 
         aside = _downwind(place[:2], plant.cables[0].anchor[:2], into_wind)
         place = place.at[:2].set(jnp.where(turned, aside, place[:2]))
     base = _given(base.at[9:12].set(place), question)
-    return Problem(plant.at_mean(), base, question.unknowns, question.hold)
+    turning = config.turning()
+    given = None if turning is None else jnp.stack([jnp.asarray(rate, dtype=float) for rate in turning])
+    return Problem(plant.at_mean(), base, question.unknowns, question.hold, given)
 
 
 @eqx.filter_jit

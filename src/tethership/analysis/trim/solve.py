@@ -18,7 +18,7 @@ from tethership.analysis.trim.unknowns import Unknowns
 from tethership.plant import Command, State, TetheredAirship
 from tethership.plant.balance import RESIDUAL_LIMIT, drift, residual
 from tethership.plant.plant import end_tension
-from tethership.spatial import STANDARD_GRAVITY, rotation_matrix, safe_norm
+from tethership.spatial import STANDARD_GRAVITY, body_rates, rotation_matrix, safe_norm
 
 EFFORT = 1e-3
 """Weight of the throttles beside the residual, which is in units of 1e-3 of the weight: small enough to move the
@@ -37,19 +37,23 @@ class Problem(eqx.Module):
         Which of them are looked for.
     hold_tether : bool
         Whether the position follows the attitude so that the first tether point stays.
+    turning : Float[Array, "3"], optional
+        Rates of φ, θ, ψ of a steady turn or a pull-up [rad/s]; p, q, r follow from them.
     """
 
     plant: TetheredAirship
     base: Float[Array, "n"]
     unknowns: Unknowns
     hold_tether: bool = eqx.field(static=True)
+    turning: Float[Array, "3"] | None = None
 
     def unpack(self, values: Float[Array, "unknowns"]) -> tuple[State, Command]:
         """Return state and command for values of the unknowns, in units of their scales."""
         ship = self.plant.ship
         everything = self.unknowns.placed(self.base, values)
         rotation = rotation_matrix(everything[6:9])
-        state = State(rotation.T @ everything[0:3], everything[3:6], everything[6:9], everything[9:12])
+        rates = everything[3:6] if self.turning is None else body_rates(everything[6:9], self.turning)
+        state = State(rotation.T @ everything[0:3], rates, everything[6:9], everything[9:12])
         count = ship.thrusters.count
         if self.hold_tether:
             start = rotation_matrix(self.base[6:9])
@@ -67,7 +71,7 @@ class Problem(eqx.Module):
         left = residual(self.plant, state, command) / unit
         if not any(place in self.moving for place in self.unknowns.index):
             return left
-        return jnp.concatenate([left, drift(self.plant, state) / 1e-3])
+        return jnp.concatenate([left, drift(self.plant, state, self.turning) / 1e-3])
 
     @property
     def moving(self) -> range:
@@ -195,7 +199,7 @@ def described(problem: Problem, values: Float[Array, "unknowns"]) -> Described:
         jnp.stack([end_tension(c) for c in cables]) if cables else none,
         residual(plant, state, command),
         residual(plant, state, plant.ship.allowed(command)),
-        drift(plant, state),
+        drift(plant, state, problem.turning),
         ground - plant.ship.lowest_point(state),
         ground - jnp.stack(lowest) if lowest else none,
     )
