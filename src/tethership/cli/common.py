@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
-from tethership.cli.completion import complete_formulation, complete_parameter, complete_scenario
+from tethership.cli.completion import complete_formulation, complete_line, complete_parameter, complete_scenario
 from tethership.errors import ConfigError, shown, suggestion
 from tethership.results.files import check_writable
 from tethership.scenario import Scenario, load_scenario
@@ -44,7 +44,12 @@ FormulationOption = Annotated[
 ]
 LineOption = Annotated[
     str | None,
-    typer.Option("--line", metavar="MODEL", help="catenary or published: the model of every cable's line."),
+    typer.Option(
+        "--line",
+        metavar="MODEL",
+        help="catenary or published: the model of every cable's line.",
+        autocompletion=complete_line,
+    ),
 ]
 TrustOption = Annotated[bool, typer.Option("--trust", help="Let code of one's own that the file names be run.")]
 OutOption = Annotated[Path, typer.Option(help="Folder for the files that are written.")]

@@ -27,6 +27,11 @@ def complete_formulation(incomplete: str) -> list[str]:
     return _begun(["consistent", "published"], incomplete)
 
 
+def complete_line(incomplete: str) -> list[str]:
+    """Return the models of a line."""
+    return _begun(["catenary", "published"], incomplete)
+
+
 def complete_kind(incomplete: str) -> list[str]:
     """Return what `tethership list` lists."""
     return _begun([*list_packaged(), "outputs", "parameters"], incomplete)

@@ -30,6 +30,7 @@ ATTRIBUTES: dict[str, str] = {
     "own_laws": "names of laws of one's own",
     "sas": "whether SAS/attitude acted",
     "formulation": "consistent or published",
+    "line": "model of each cable's line, by the cable's name",
     "limits": "tensions that are watched [N]: control threshold, envelope's tear and tensile force, weakest cable",
     "scenario_name": "packaged name or file",
     "scenario": "the scenario as read, vehicle and changes included",

@@ -4,7 +4,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from tethership.errors import MOST_LETTERS, shown
+from tethership.errors import MOST_LETTERS, shown, suggestion
 
 
 def first_problem(error: ValidationError, origin: str, document: Any) -> str:
@@ -63,6 +63,12 @@ def _said(problem: Any) -> str:
         return "it is missing; add it (`tethership new` writes a complete file to start from)"
     if kind in ("union_tag_not_found", "union_tag_invalid"):
         context = problem["ctx"]
+        known = [tag.strip("'") for tag in context.get("expected_tags", "").split(", ")]
+        if "tag" in context:
+            came, near = shown(context["tag"]), suggestion(str(context["tag"]), known)
+            return f"give {context['discriminator']} as one of {context['expected_tags']}; it is {came}{near}".rstrip(
+                "."
+            )
         return f"give {context['discriminator']} as one of {context.get('expected_tags', 'the known kinds')}"
     if kind == "value_error":
         return str(problem["ctx"]["error"])

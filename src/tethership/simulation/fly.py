@@ -99,6 +99,7 @@ def fly(
         "own_laws": ["law"] if law is not None else list(own_laws or {}),
         "sas": active,
         "formulation": scenario.formulation,
+        "line": scenario.config.line_models(),
         "limits": scenario.config.watched_tensions(),
         "scenario_name": scenario.name,
         "scenario": scenario.document,

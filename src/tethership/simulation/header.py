@@ -50,6 +50,7 @@ class FlightHeader(BaseModel):
     own_laws: list[str]
     sas: bool
     formulation: Literal["consistent", "published"]
+    line: dict[str, dict[str, Any]] | None = None
     limits: Annotated[list[Number], Field(min_length=4, max_length=4)]
     scenario_name: str
     scenario: dict[str, Any]

@@ -93,7 +93,7 @@ def quasi_static_warning(flight: Recorded) -> str | None:
     impulse, moment = largest_impulse(flight)
     advice = ""
     if any(line["model"] == "published" for line in flight.config.line_models().values()):
-        advice = "; the paper's cable pulls from e = 0.99 on and overstates snaps: see formulation consistent"
+        advice = "; the paper's cable pulls from e = 0.99 on and overstates snaps: take the line catenary"
     elif impulse > 0.0:
         advice = f"; a dynamic line may peak up to {impulse:.0f} N higher at the snap at {moment:.1f} s"
     return (
