@@ -27,7 +27,7 @@ TRUST = (
     f"**Trust in tensions.** They are a quasi-static cable's, which may be trusted while they change more slowly than "
     f"{TRUSTED:g} of the cable's first transverse mode, and did for {MEMORY:g} s; outside, a dynamic line may peak "
     "elsewhere. *With the snap's wave*: the axial wave of each flight's hardest snap, closing speed × √(EA × linear "
-    "density), is added to its peak, an upper bound. The paper's cable (formulation `published`) pulls before it is "
+    "density), is added to its peak, an upper bound. The paper's cable (line `published`) pulls before it is "
     "taut and overstates snaps already."
 )
 """What is to be said beside every verdict on tension."""
