@@ -1,5 +1,6 @@
 """Changing single values of a document by their dotted names. Depends on: scenario.quantity, scenario.reading."""
 
+import copy
 from collections.abc import Sequence
 from typing import Any
 
@@ -28,7 +29,7 @@ def change(document: Document, dotted: str, value: Any, origin: str) -> None:
         raise ConfigError(f"{origin}: {shown(dotted)} has {len(path)} steps; no value lies that deep")
     check_plain(value, f"{origin}: {shown(dotted)}")
     for name in _expanded(document, path, dotted, origin):
-        _change(document, name, value, origin)
+        _change(document, name, copy.deepcopy(value), origin)  # items that share a table would move together
 
 
 def _expanded(document: Document, path: list[str], dotted: str, origin: str) -> list[str]:
@@ -55,7 +56,7 @@ def _change(document: Document, dotted: str, value: Any, origin: str) -> None:
     place: Any = document
     for step in path[:-1]:
         place = _enter(place, step, dotted, origin)
-    if path and last.isdigit() and _is_vector(place, path[-1]):
+    if path and last.isascii() and last.isdigit() and _is_vector(place, path[-1]):
         _set_component(place[path[-1]], last, value, f"{origin}: {shown(dotted)}")
         return
     for step in path[-1:]:
@@ -84,6 +85,8 @@ def _set_component(entry: dict[str, Any], last: str, value: Any, what: str) -> N
         raise ConfigError(f"{what}: there is no component {last}; they are 0 to {len(numbers) - 1}")
     if not isinstance(value, dict):
         value = {"value": value, "unit": SI_UNIT}
+    if not isinstance(value.get("unit"), str):
+        raise ConfigError(f"{what}: the unit is missing or no text; give a number with its unit, e.g. 1.5m")
     if not _is_number(value.get("value")) or isinstance(value["value"], list | tuple):
         raise ConfigError(f"{what}: {shown(value.get('value'))} is no number; give one, e.g. 1.5 or 1.5m")
     try:

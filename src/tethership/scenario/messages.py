@@ -1,5 +1,6 @@
 """One clear line out of pydantic's list of problems. Depends on: pydantic, errors."""
 
+import re
 from typing import Any
 
 from pydantic import ValidationError
@@ -63,13 +64,9 @@ def _said(problem: Any) -> str:
         return "it is missing; add it (`tethership new` writes a complete file to start from)"
     if kind in ("union_tag_not_found", "union_tag_invalid"):
         context = problem["ctx"]
-        known = [tag.strip("'") for tag in context.get("expected_tags", "").split(", ")]
-        if "tag" in context:
-            came, near = shown(context["tag"]), suggestion(str(context["tag"]), known)
-            return f"give {context['discriminator']} as one of {context['expected_tags']}; it is {came}{near}".rstrip(
-                "."
-            )
-        return f"give {context['discriminator']} as one of {context.get('expected_tags', 'the known kinds')}"
+        allowed = context.get("expected_tags", "the known kinds")
+        near = suggestion(str(context.get("tag", "")), re.findall(r"'([^']*)'", allowed)).rstrip(".")
+        return f"give {context['discriminator']} as one of {allowed}{near}"
     if kind == "value_error":
         return str(problem["ctx"]["error"])
     return f"it is {shown(problem['input'])}; {problem['msg'][0].lower()}{problem['msg'][1:]}"
