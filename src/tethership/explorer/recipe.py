@@ -108,7 +108,8 @@ def _changed(document: TOMLDocument, added: Mapping[str, Any]) -> TOMLDocument:
         changes: Any = document["changes"]
         changes.update(added)
         return document
-    table = tomlkit.table().comment(REMARK)
+    table = tomlkit.table()
+    table.comment(REMARK)
     table.update(added)
     table.add(tomlkit.nl())
     return _first(document, table)
@@ -122,7 +123,9 @@ def _first(document: TOMLDocument, changes: Table) -> TOMLDocument:
             found.add("changes", changes)
             waiting = False
         found.append(key, value)
-    return found if not waiting else found.add("changes", changes)
+    if waiting:
+        found.add("changes", changes)
+    return found
 
 
 def _number(value: float, unit: str, si_unit: str) -> str:
