@@ -9,6 +9,7 @@ import socket
 import sys
 import threading
 import time
+import tomllib
 
 import numpy as np
 import pytest
@@ -16,10 +17,11 @@ import pytest
 import tethership as ts
 from tethership.cli import main
 from tethership.errors import ConfigError, SolveError
-from tethership.explorer.choice import Form
+from tethership.explorer.choice import Choice, Form
 from tethership.explorer.fields import groups, typed
 from tethership.explorer.folder import Folder
 from tethership.explorer.queue import Desk
+from tethership.explorer.recipe import file_text
 from tethership.explorer.requests import Understanding
 from tethership.explorer.tasks import compute
 from tethership.explorer.worker import Stopped
@@ -394,3 +396,23 @@ def test_a_port_in_use_is_said(refusal):
 )
 def test_wrong_flags_are_said(refusal, flags, message):
     assert message in refusal(*flags)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '# top\ntitle = "x"\n\n[wind] # kept\nx = 1 # kept\n\n[a]\nb = 2\n\n[wind.low]\nc = 3\n',
+        '[changes]\n# kept\n"wind.speed" = 3 # kept\n\n[wind]\nx = 1\n',
+        'changes = { "wind.speed" = 3 }\n[wind]\nx = 1 # kept\n',
+        'changes."wind.speed" = 3\n\n[wind]\nx = 1 # kept\n',
+    ],
+)
+def test_file_keeps_comments_and_order_however_its_changes_are_written(docking, text):
+    """What stands in the file and is not changed stays, and the changes are read back."""
+    choice = Choice("mine.toml", 0, json.dumps({"wind.speed": {"value": 9.0, "unit": "km/h"}, "stop.x": True}), ())
+    whole = file_text(docking, text, choice)
+    former, now = tomllib.loads(text), tomllib.loads(whole)
+    assert now.pop("changes") == {"wind.speed": {"value": 9.0, "unit": "km/h"}, "stop.x": True}
+    former.pop("changes", None)
+    assert now == former
+    assert whole.count("# kept") == text.count("# kept")

@@ -10,13 +10,13 @@ import pytest
 import tethership as ts
 from tethership.scenario import list_parameters
 from tethership.scenario.load import packaged_text
+from tethership.studies.docking_paper.fit import identify as module
 from tethership.studies.docking_paper.fit.fit_file import fit_document, fit_text, read_fit, stored_fit
 from tethership.studies.docking_paper.fit.identify import Budget, Identification, at_bounds, nudged, widened
 from tethership.studies.docking_paper.fit.misfit import FAILED, fly_rows, items, residuals
 from tethership.studies.docking_paper.fit.space import UNKNOWNS, named_values, to_shares, to_values
 from tethership.studies.docking_paper.fit.targets import fitted_rows, published_rows
 from tethership.studies.docking_paper.fit.vehicle_file import vehicle_text
-from tethership.tuning import identify as module
 from tethership.tuning.scenario_file import retuned_text
 from tethership.tuning.search import NEARLY, Archive, Slopes, evolve, misfit, refine, sobol, spread
 

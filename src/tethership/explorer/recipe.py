@@ -3,22 +3,24 @@
 Both are the scenario and its changes as `load_scenario` takes them, written for a shell and as TOML.
 """
 
+import contextlib
 import json
-import re
 import shlex
 import tomllib
-from collections.abc import Iterable, Iterator
+from collections.abc import Mapping
 from typing import Any, NamedTuple
+
+import tomlkit
+from tomlkit import TOMLDocument
+from tomlkit.exceptions import TOMLKitError
+from tomlkit.items import AoT, Table
 
 from tethership.errors import ConfigError
 from tethership.explorer.choice import Choice
 from tethership.scenario import Scenario
 from tethership.scenario.parameters import list_parameters
 
-HEADING = re.compile(r"^\[changes\][^\n]*$", re.MULTILINE)
-
-FIRST_TABLE = re.compile(r"^\[", re.MULTILINE)
-"""Where the first table begins: the changes are put before it, where they are seen."""
+REMARK = "made in tethership explore; they win over what stands elsewhere in this file"
 
 
 class Span(NamedTuple):
@@ -87,41 +89,43 @@ def file_text(base: Scenario, text: str, choice: Choice) -> str:
     ConfigError
         The file's own changes are not written as a table.
     """
-    units = {leaf.key: leaf.unit for parameter in list_parameters(base.config).values() for leaf in parameter.leaves}
-    lines = [f'"{key}" = {_entry(key, value, units.get(key))}' for key, value in choice.values.items()]
-    if not lines:
+    if not choice.values:
         return text
+    units = {leaf.key: leaf.unit for parameter in list_parameters(base.config).values() for leaf in parameter.leaves}
+    added = {key: _entry(key, value, units.get(key)) for key, value in choice.values.items()}
     former = tomllib.loads(text)
-    wanted = {**former, "changes": {**former.get("changes", {}), **_parsed(lines)}}
-    for whole in _ways(text, choice.values, "\n".join(lines)):
-        try:
-            if tomllib.loads(whole) == wanted:
-                return whole
-        except tomllib.TOMLDecodeError:
-            continue
+    wanted = {**former, "changes": {**former.get("changes", {}), **{key: one.unwrap() for key, one in added.items()}}}
+    with contextlib.suppress(TOMLKitError, tomllib.TOMLDecodeError):
+        whole = tomlkit.dumps(_changed(tomlkit.parse(text), added))
+        if tomllib.loads(whole) == wanted:
+            return whole
     raise ConfigError(f"{base.name} has changes of its own that are no table; write them under [changes], one a line")
 
 
-def _parsed(lines: Iterable[str]) -> dict[str, Any]:
-    return tomllib.loads("\n".join(lines))
+def _changed(document: TOMLDocument, added: Mapping[str, Any]) -> TOMLDocument:
+    """Return a document with entries in its table `[changes]`, or in a new one before the first table."""
+    if "changes" in document:
+        changes: Any = document["changes"]
+        changes.update(added)
+        return document
+    table = tomlkit.table()
+    table.comment(REMARK)
+    table.update(added)
+    table.add(tomlkit.nl())
+    return _first(document, table)
 
 
-def _ways(text: str, keys: Iterable[str], added: str) -> Iterator[str]:
-    """Yield the text with lines in its table `[changes]`, or in a new one: before the first table, or at the end."""
-    heading = HEADING.search(text)
-    if heading is not None:
-        after = FIRST_TABLE.search(text, heading.end())
-        end = len(text) if after is None else after.start()
-        kept = text[heading.end() + 1 : end]
-        for key in keys:
-            kept = re.sub(rf'^"{re.escape(key)}"\s*=[^\n]*\n?', "", kept, flags=re.MULTILINE)
-        yield f"{text[: heading.end()]}\n{added}\n{kept}{text[end:]}"
-        return
-    table = f"[changes] # made in tethership explore; they win over what stands elsewhere in this file\n{added}\n"
-    first = FIRST_TABLE.search(text)
-    if first is not None:
-        yield f"{text[: first.start()]}{table}\n{text[first.start() :]}"
-    yield f"{text.rstrip()}\n\n{table}"
+def _first(document: TOMLDocument, changes: Table) -> TOMLDocument:
+    """Return a document with changes before its first table, where they are seen."""
+    found, waiting = TOMLDocument(), True
+    for key, value in document.body:
+        if waiting and isinstance(value, Table | AoT):
+            found.add("changes", changes)
+            waiting = False
+        found.append(key, value)
+    if waiting:
+        found.add("changes", changes)
+    return found
 
 
 def _number(value: float, unit: str, si_unit: str) -> str:
@@ -143,15 +147,19 @@ def _flag(value: Any) -> str:
     return _plain(value) if isinstance(value, float) else json.dumps(value)
 
 
-def _entry(key: str, value: Any, unit: str | None) -> str:
+def _entry(key: str, value: Any, unit: str | None) -> Any:
     """Return a value as the table `[changes]` holds it."""
-    if isinstance(value, dict):
-        return f'{{ value = {json.dumps(value["value"])}, unit = "{value["unit"]}" }}'
-    if isinstance(value, str | bool) or unit is None or not _is_numeric(value):
-        return json.dumps(value)
+    if isinstance(value, str | bool | dict) or unit is None or not _is_numeric(value):
+        return _inline(value) if isinstance(value, dict) else tomlkit.item(value)
     if key.startswith("vehicle.") or key.split(".")[-2].endswith("share"):
-        return json.dumps(value) + ("" if unit == "1" else f" # {unit}")
-    return f'{{ value = {json.dumps(value)}, unit = "{unit}" }}'
+        return tomlkit.item(value) if unit == "1" else tomlkit.item(value).comment(unit)
+    return _inline({"value": value, "unit": unit})
+
+
+def _inline(value: dict[str, Any]) -> Any:
+    found = tomlkit.inline_table()
+    found.update(value)
+    return found
 
 
 def _is_numeric(value: Any) -> bool:

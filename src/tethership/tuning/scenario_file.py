@@ -1,16 +1,15 @@
-"""A scenario file with tuned gains: the packaged file, these lines replaced. Depends on: errors."""
+"""A scenario file with tuned gains: the packaged file with other numbers, all else kept. Depends on: tomlkit."""
 
-import re
 from collections.abc import Mapping
+from typing import Any
+
+import tomlkit
 
 from tethership.errors import ConfigError
 
-_HEADER = re.compile(r"^\[\[?(?P<section>[\w.]+)\]\]?")
-_ENTRY = re.compile(r'^(?P<key>\w+)\s*=\s*\{\s*value\s*=\s*[^,]+,\s*unit\s*=\s*"(?P<unit>[^"]+)".*\}(?P<rest>.*)$')
-
 
 def retuned_text(template: str, gains: Mapping[str, float], wind: float, words: Mapping[str, str], source: str) -> str:
-    """Return a scenario file's text with other gains, wind and words.
+    """Return a scenario file's text with other gains, wind and words; its comments and order stay.
 
     Parameters
     ----------
@@ -30,21 +29,30 @@ def retuned_text(template: str, gains: Mapping[str, float], wind: float, words: 
     ConfigError
         The template has no line for one of the gains.
     """
-    wanted = {**gains, "wind.speed": wind}
-    section, met, lines = "", set[str](), []
-    for line in template.splitlines():
-        header, entry = _HEADER.match(line), _ENTRY.match(line)
-        if header:
-            section = header["section"]
-        elif section == "" and (word := line.partition("=")[0].strip()) in words:
-            line = f'{word} = "{words[word]}"'
-        elif entry and f"{section}.{entry['key']}" in wanted:
-            name = f"{section}.{entry['key']}"
-            met.add(name)
-            said = "" if name == "wind.speed" else f', source = "{source}"'
-            line = f'{entry["key"]} = {{ value = {wanted[name]:.6g}, unit = "{entry["unit"]}"{said} }}'
-        lines.append(line)
-    missing = sorted(set(wanted) - met)
+    document = tomlkit.parse(template)
+    document.update({key: word for key, word in words.items() if key in document})
+    missing = [name for name, value in gains.items() if not _set(document, name, value, source)]
+    missing += [] if _set(document, "wind.speed", wind, "") else ["wind.speed"]
     if missing:
         raise ConfigError(f"the scenario template has no line for {', '.join(missing)}; start from docking_paper")
-    return "\n".join(lines) + "\n"
+    return tomlkit.dumps(document)
+
+
+def _set(document: Any, name: str, value: float, source: str) -> bool:
+    """Set a quantity by its dotted name; returns whether the document has it."""
+    *tables, key = name.split(".")
+    for table in tables:
+        document = document.get(table, {})
+    if "unit" not in document.get(key, {}):
+        return False
+    set_quantity(document[key], value, source)
+    return True
+
+
+def set_quantity(entry: Any, value: float, source: str) -> None:
+    """Give a quantity of a document another value, to six digits, and another source, none if it is empty."""
+    entry["value"] = float(f"{value:.6g}")
+    if source:
+        entry["source"] = source
+    else:
+        entry.pop("source", None)

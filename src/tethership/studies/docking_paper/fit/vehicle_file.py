@@ -1,18 +1,16 @@
-"""A vehicle file with identified numbers: the literature's file, these lines replaced. Depends on: fit.space.
+"""A vehicle file with identified numbers: the literature's file with these replaced. Depends on: tomlkit, fit.space.
 
 The text is edited, not written anew, so that comments, order and the sources of everything else stay.
 """
 
-import re
-from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
+import tomlkit
 
 from tethership.errors import ConfigError
-from tethership.studies.docking_paper.fit.space import UNKNOWNS, Unknown
-
-_HEADER = re.compile(r"^\[\[?(?P<section>[\w.]+)\]\]?")
-_ENTRY = re.compile(r"^(?P<key>\w+)\s*=\s*(?P<value>.*)$")
+from tethership.studies.docking_paper.fit.space import UNKNOWNS
+from tethership.tuning.scenario_file import set_quantity
 
 
 def vehicle_text(template: str, values: np.ndarray, name: str, description: str, source: str) -> str:
@@ -34,40 +32,24 @@ def vehicle_text(template: str, values: np.ndarray, name: str, description: str,
     ConfigError
         The template has no line for one of the numbers.
     """
-    wanted = {
-        key: (unknown, float(value))
-        for unknown, value in zip(UNKNOWNS, values, strict=True)
-        for key in unknown.parameters
-    }
-    words = {"name": f'"{name}"', "description": f'"{description}"'}
-    section, item, met, lines = "", "", set[str](), []
-    for line in template.splitlines():
-        header, entry = _HEADER.match(line), _ENTRY.match(line)
-        if header:
-            section, item = header["section"], ""
-        elif entry and section == "" and entry["key"] in words:
-            line = f"{entry['key']} = {words[entry['key']]}"
-        elif entry and entry["key"] == "name":
-            item = entry["value"].strip('"')
-        elif entry:
-            key = _found(wanted, section, item, entry["key"])
-            if key is not None:
-                met.add(key)
-                line = f"{entry['key']} = {_quantity(*wanted[key], source)}"
-        lines.append(line)
-    missing = sorted(set(wanted) - met)
+    document = tomlkit.parse(template)
+    document.update({"name": name, "description": description})
+    missing = []
+    for unknown, value in zip(UNKNOWNS, values, strict=True):
+        for key in unknown.parameters:
+            _, section, *item, number = key.split(".")
+            tables = _tables(document.get(section, []), *item)
+            if not tables or any(number not in table for table in tables):
+                missing.append(key)
+            for table in tables:
+                if number in table:
+                    table[number]["unit"] = unknown.unit
+                    set_quantity(table[number], float(value), source)
     if missing:
         raise ConfigError(f"the vehicle template has no line for {', '.join(missing)}; start from a copy of lotte.toml")
-    return "\n".join(lines) + "\n"
+    return tomlkit.dumps(document)
 
 
-def _found(wanted: Mapping[str, object], section: str, item: str, key: str) -> str | None:
-    """Return the dotted name that a line of a section and named item stands for, if it is wanted."""
-    full = f"vehicle.{section}.{item}.{key}" if item else f"vehicle.{section}.{key}"
-    starred = f"vehicle.{section}.*.{key}"
-    return next((name for name in (full, starred) if name in wanted), None)
-
-
-def _quantity(unknown: Unknown, value: float, source: str) -> str:
-    """Return the inline table of a number."""
-    return f'{{ value = {value:.6g}, unit = "{unknown.unit}", source = "{source}" }}'
+def _tables(section: Any, item: str | None = None) -> list[Any]:
+    """Return a section, or of a list the table that is named as an item, all of them for a star."""
+    return [section] if item is None else [table for table in section if item in ("*", table["name"])]
