@@ -10,7 +10,7 @@ import numpy as np
 import tethership as ts
 from tethership.studies.docking_paper import CLAIMS, FIGURES, check_claims, linear_figure
 from tethership.studies.docking_paper.linear_claims import FINS, LITERATURE_FINS
-from tethership.view import plot_linear_figure
+from tethership.studies.docking_paper.view.linear_figures import plot_linear_figure
 
 HERE = Path(__file__).parent
 BOTH = ("consistent", "published")

@@ -109,8 +109,8 @@ def test_what_is_held_out_cannot_be_fitted(docking):
 
 
 def test_nothing_that_fits_reads_past_its_loader():
-    """In `fitting`, only the loader itself has the rows that are held out, or the file that they are in."""
-    folder = Path(ts.__file__).parent / "fitting"
+    """Of the fit, only the loader itself has the rows that are held out, or the file that they are in."""
+    folder = Path(ts.__file__).parent / "studies" / "docking_paper" / "fit"
     known = [path.name for path in folder.glob("*.py") if re.search("published_rows|data/paper", path.read_text())]
     assert known == ["targets.py"]
 

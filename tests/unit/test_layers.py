@@ -11,6 +11,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Float
 
 import tethership as ts
@@ -181,7 +182,8 @@ def test_memory_is_integrated_with_the_plant(loop, start):
     vector = loop.initial(start)
     assert vector.shape == (12 + CABLES + 4 + 1,)
     path = np.asarray(flown(loop, vector))
-    state, _, memory = loop.unpack(jnp.asarray(path[-1]))
+    reached = loop.unpack(jnp.asarray(path[-1]))
+    state, memory = reached.ship, ravel_pytree(reached.law)[0]
     # Flattened dictionaries go by key: climbed, flown; then the clock.
     np.testing.assert_array_equal(np.asarray(vector[13:14]), 0.0)
     np.testing.assert_allclose(np.asarray(memory[4]), 0.25 + 2.0**2 / 2, rtol=1e-13)  # exact for Runge–Kutta
