@@ -241,7 +241,8 @@ class ScenarioConfig(Table):
         trim = self.trim
         if trim.turn_rate is None and trim.pull_up_rate is None:
             return None
-        return (0.0, *(0.0 if rate is None else rate for rate in (trim.pull_up_rate, trim.turn_rate)))
+        pitch, yaw = (0.0 if rate is None else rate for rate in (trim.pull_up_rate, trim.turn_rate))
+        return (0.0, pitch, yaw)
 
     def watched_limits(self) -> dict[str, float]:
         """Return the four tensions that are watched [N] by the names of `results.limits`."""
