@@ -30,7 +30,7 @@ def test_component_keeps_the_unit_of_its_vector():
         ("cables.nose.anchor.²", 1.0, r"docking: cables\.nose\.anchor"),
         ("cables.nose.anchor.0", {"value": 1.0}, r"'cables\.nose\.anchor\.0': the unit is missing or no text"),
         ("cables.nose.anchor.0", {"value": 1.0, "unit": "kg"}, r"the unit is 'kg', which is no 'm'"),
-        ("cables.nose.line.model", "publishd", r"line: give 'model' as one of .*; did you mean 'published'\?"),
+        ("cables.nose.line.model", "ppublished", r"line: give 'model' as one of .*; did you mean 'published'\?"),
     ],
 )
 def test_refused_in_one_line(name, value, message):

@@ -83,7 +83,7 @@ def source_digest() -> str:
     root = resources.files("tethership")
     digest = hashlib.sha256()
     for path in sorted(Path(str(root)).rglob("*")):
-        if path.suffix in (".py", ".toml", ".json", ".css", ".js") and path.is_file():
+        if path.suffix in (".py", ".toml", ".json", ".css", ".js", ".html") and path.is_file():
             digest.update(str(path.relative_to(str(root))).encode())
             digest.update(path.read_bytes())
     return digest.hexdigest()
