@@ -19,7 +19,7 @@ MOST_MAPS = 20_000
 """Every compiled program keeps hundreds of memory maps; Linux allows a process 65 530 and XLA aborts beyond."""
 
 STATM = Path("/proc/self/statm")
-MOST_MEMORY = 1.6e9
+MOST_MEMORY = 1.8e9
 """Resident memory [byte] above which compiled programs are forgotten: two workers then stay below 5 GB together."""
 
 SLOW_FIXTURES = {"browser", "browsed", "cluster", "study"}
@@ -38,18 +38,31 @@ def resident():
     return int(STATM.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") if STATM.exists() else 0
 
 
-@pytest.fixture(autouse=True, scope="module")
-def _room_for_programs():
-    """Forget compiled programs before a process has no maps or too much memory; the compilation cache has them."""
-    yield
+def _forget_programs():
+    """Forget compiled programs, of which the compilation cache has a copy, and hand their memory back."""
     before = resident()
-    if before > MOST_MEMORY or (MAPS.exists() and MAPS.read_bytes().count(b"\n") > MOST_MAPS):
-        eqx.clear_caches()
-        jax.clear_caches()
-        gc.collect()
-        with contextlib.suppress(OSError, AttributeError):  # glibc keeps what is freed until it is asked
-            ctypes.CDLL("libc.so.6").malloc_trim(0)
-        print(f"compiled programs forgotten: {before / 1e9:.2f} -> {resident() / 1e9:.2f} GB")
+    eqx.clear_caches()
+    jax.clear_caches()
+    gc.collect()
+    with contextlib.suppress(OSError, AttributeError):  # glibc keeps what is freed until it is asked
+        ctypes.CDLL("libc.so.6").malloc_trim(0)
+    print(f"compiled programs forgotten: {before / 1e9:.2f} -> {resident() / 1e9:.2f} GB")
+
+
+@pytest.fixture(autouse=True)
+def _room_for_memory():
+    """Forget programs before a process has too much memory: after a test, since one module may take 2 GB."""
+    yield
+    if resident() > MOST_MEMORY:
+        _forget_programs()
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _room_for_maps():
+    """Forget programs before a process has no maps left; counting them takes a while."""
+    yield
+    if MAPS.exists() and MAPS.read_bytes().count(b"\n") > MOST_MAPS:
+        _forget_programs()
 
 
 @pytest.fixture(scope="session")

@@ -14,8 +14,10 @@ from pathlib import Path
 
 import equinox as eqx
 import pytest
+import typer
 
 import tethership as ts
+from tethership.cli import app
 from tethership.results import VARIABLES
 from tethership.scenario.load import list_packaged, packaged_text
 
@@ -115,8 +117,8 @@ def test_every_parameter_of_physics_has_a_unit():
                 described = re.search(
                     rf"\n    (?:\w+, )*{field}(?:, \w+)* : [^\n]*\n(.*?)(?=\n    \w[\w, ]* : |\Z)", text, re.DOTALL
                 )
-                of_its_own = "SliceIntegrals" in str(thing.__dataclass_fields__[field].type)
-                if not described or ("[" not in described.group(1) and not of_its_own):
+                of_its_own = re.search(r"SliceIntegrals|tuple\[int|bool", str(thing.__dataclass_fields__[field].type))
+                if not described or not (names_unit(described.group(1)) or of_its_own):
                     missing.append(f"{module.__name__}.{name}.{field}")
     assert missing == []
 
@@ -129,7 +131,10 @@ def test_every_function_of_physics_names_a_unit():
 
 
 def test_every_output_has_a_unit():
-    assert all(entry.unit and entry.meaning for entry in VARIABLES.values())
+    assert {"tension", "attitude", "throttle"} <= set(VARIABLES)
+    for name, entry in VARIABLES.items():
+        assert entry.unit == "1" or is_unit(entry.unit.replace("m3", "m³")), name
+        assert len(entry.meaning.split()) >= 2, name
 
 
 def quantities(table, path=""):
@@ -168,7 +173,12 @@ def test_readme_commands_exist():
     text = (ROOT / "README.md").read_text()
     used = set(re.findall(r"^(?:tethership|make) (\w+)", text, re.MULTILINE))
     assert used >= {"dock", "trim", "tension", "new", "list", "test"}
-    for path in re.findall(r"\]\((?!http)([^)]+)\)", text):
+    assert set(re.findall(r"^tethership (\w+)", text, re.MULTILINE)) <= set(typer.main.get_command(app).commands)
+    targets = re.findall(r"^([\w-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    assert set(re.findall(r"^make ([\w-]+)", text, re.MULTILINE)) <= set(targets)
+    links = re.findall(r"\]\((?!http)([^)]+)\)", text)
+    assert len(links) > 5
+    for path in links:
         assert (ROOT / path).exists(), path
 
 

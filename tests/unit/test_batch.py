@@ -49,6 +49,7 @@ def test_neighbours_change_nothing(docking, flown):
         np.testing.assert_allclose(value[0], flown[name][0], rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_stragglers_of_a_wide_batch_fly_on_alone(docking):
     """Winches from fast to slow, some too slow for the time limit: the last quarter ends as in a small batch."""
     switches = layer_switches(docking, LAYERS[0])

@@ -207,6 +207,7 @@ def test_failed_flights_count_against_every_limit(whole, plan):
     assert answer(plan, data)["failed"] == 2
 
 
+@pytest.mark.slow
 def test_no_scheduler_is_said_in_one_line(tmp_path, small):
     done = subprocess.run(
         [*COMMAND, "campaign", small, "--scheduler", "tcp://127.0.0.1:9", "--out", str(tmp_path / "x")],
@@ -315,6 +316,7 @@ def test_plots_show_the_answers(whole, small):
             ts.plot_campaign(found, **given)
 
 
+@pytest.mark.slow
 def test_flights_without_a_start_have_no_verdict_and_exit_3(tmp_path):
     """Wind from aside has no equilibrium for six throttles: nothing can be said of the odds."""
     text = 'title = "Aside"\nscenario = "docking_paper"\nsamples = 6\nworst = 0\nrandom = 0\nverified = 0.0\n'

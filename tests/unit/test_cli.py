@@ -257,6 +257,7 @@ print(kinds.count("cache_hits"), kinds.count("cache_misses"))
 """
 
 
+@pytest.mark.slow
 def test_a_second_process_does_not_compile_again(tmp_path):
     """JAX's persistent cache: the first process misses, the second hits for every program, the
     integrator's included, and misses none.

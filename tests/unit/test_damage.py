@@ -87,6 +87,7 @@ def test_file_and_back_has_the_same_run(flown, saved):
     assert changed.run != flown.run
 
 
+@pytest.mark.slow
 def test_any_flipped_bit_is_refused_or_harmless(flown, saved):
     whole = saved.read_bytes()
     choose, told = random.Random(1), []

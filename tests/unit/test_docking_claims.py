@@ -414,6 +414,7 @@ def test_one_flight_that_did_not_dock_spoils_its_parts_only():
     assert claim_6(broken).numbers["peak tension [N]"]["rewind, 12 m/s"] == "not flown"
 
 
+@pytest.mark.slow
 def test_real_flights():
     """All claims of the packaged scenario, with ground effect for rewind control, as plain numbers."""
     effect = {"ground.effect_coefficient": {"value": 0.01, "unit": "1/m"}}

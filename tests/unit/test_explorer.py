@@ -112,6 +112,7 @@ def test_locus_shown_is_that_of_the_commands(known, shell):
     sweep, modes = map(shell, known.commands(request))
     shown = computed(request)
     drawn = {trace["name"]: trace for trace in shown["figure"]["data"]}
+    assert len(sweep["tracks"]) == 12
     for name, roots in sweep["tracks"].items():
         assert np.allclose(numbers(drawn[name]["x"]), [root[0] for root in roots], rtol=0, atol=1e-15)
         assert np.allclose(numbers(drawn[name]["y"]), [root[1] for root in roots], rtol=0, atol=1e-15)

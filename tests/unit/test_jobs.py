@@ -8,6 +8,8 @@ import pytest
 
 from tethership.studies.docking_paper.jobs import Job, Settings, belongs, load_part, plain, run_jobs
 
+pytestmark = pytest.mark.slow
+
 MODULE = """
 import time
 from pathlib import Path

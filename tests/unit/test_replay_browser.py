@@ -13,6 +13,8 @@ import tethership as ts
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="NO PLAYWRIGHT: replays are NOT tested in a browser")
 
+pytestmark = pytest.mark.slow
+
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 SIZE = {"width": 1100, "height": 700}
 
@@ -169,7 +171,8 @@ def test_plays_pauses_and_changes_speed(chromium, folder):
 
 def test_a_click_in_a_plot_seeks(chromium, folder):
     with opened(chromium, folder / "one.html") as page:
-        for plot in page.query_selector_all(".u-over")[:2]:
+        first, second, *_ = page.query_selector_all(".u-over")
+        for plot in (first, second):
             box = plot.bounding_box()
             page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 5)
             settle(page)

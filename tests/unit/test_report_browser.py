@@ -9,6 +9,8 @@ from matplotlib.figure import Figure as Drawing
 
 from tethership.view.report.report import Figure, Section, Table, write_report
 
+pytestmark = pytest.mark.slow
+
 
 def told(dom, name):
     """Return what the page says of itself."""

@@ -13,6 +13,8 @@ from tethership.studies.docking_paper.fit.fit_file import stored_fit
 from tethership.studies.docking_paper.fit.space import UNKNOWNS, named_values, to_values
 from tethership.studies.docking_paper.fit.spectrum import GROWTH, MILD, NO_OSCILLATION, PARTS, Spectrum, unmet
 
+pytestmark = pytest.mark.slow
+
 NAMES = [unknown.name for unknown in UNKNOWNS]
 
 

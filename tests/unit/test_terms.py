@@ -32,6 +32,8 @@ from tethership.studies.docking_paper.terms import (
 from tethership.studies.docking_paper.view.breakdown import load_sizes, plot_breakdown
 from tethership.view import style
 
+pytestmark = pytest.mark.slow
+
 WIND = 12.0
 RNG = np.random.default_rng(5)
 DENSITY = jnp.asarray(1.2)

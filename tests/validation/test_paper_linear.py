@@ -13,6 +13,8 @@ from tethership.studies.docking_paper import CLAIMS, FIGURES, check_claims, line
 from tethership.studies.docking_paper.linear_claims import CLAIMS as CLAIM_FUNCTIONS
 from tethership.studies.docking_paper.linear_claims import claim_9, fins
 
+pytestmark = pytest.mark.slow
+
 BOTH = ("consistent", "published")
 
 
