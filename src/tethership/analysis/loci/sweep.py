@@ -107,6 +107,8 @@ class Sweep:
         Coalescence, splits, crossings and passages of the imaginary axis.
     state_names : tuple of str
         Names of the states of the matrices: those of the ship, of actuators that lag, and in a closed loop of the laws.
+    loop : str
+        `open` or `closed`.
     """
 
     scenario: Scenario
@@ -130,6 +132,7 @@ class Sweep:
     orders: np.ndarray
     events: tuple[Happening, ...]
     state_names: tuple[str, ...] = STATE_NAMES
+    loop: str = "open"
 
     @property
     def trimmed(self) -> np.ndarray:
@@ -259,6 +262,7 @@ def sweep(scenario: Scenario, *axes: Axis, loop: str = "open") -> Sweep:
         orders=orders[kept],
         events=tuple(events),
         state_names=states,
+        loop=loop,
     )
 
 

@@ -119,6 +119,7 @@ def plot_root_loci(found: Sweep) -> Figure:
     title = f"{config.title}\nwind {config.wind.speed:g} m/s, {found.scenario.formulation} formulation"
     if "wind.speed" in found.values:
         title = f"{config.title}\n{found.scenario.formulation} formulation"
+    title += ", closed loop" if found.loop == "closed" else ""
     drawn.suptitle(title, fontsize=style.FONT + 2, color=style.INK)
     star = own_point(found)
     for axes, (words, slow) in zip(drawn.subplots(1, 2), PANELS, strict=True):
