@@ -54,5 +54,5 @@ def test_example(path, tmp_path, monkeypatch, figures):
     axes = [one for one in figures[f"{path.stem}.png"].axes if one.axison]
     assert axes
     assert [one.get_title() for one in axes if not drawn(one)] == []
-    assert any(one.get_xlabel() or one.get_ylabel() for one in axes)
+    assert any(one.get_xlabel() or one.get_ylabel() or one.get_title() for one in axes)
     assert len(path.read_text().splitlines()) <= 40
