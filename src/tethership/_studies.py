@@ -17,11 +17,6 @@ def commands() -> list[EntryPoint]:
     return sorted(entry_points(group=COMMANDS), key=lambda entry: entry.name)
 
 
-def offered() -> list[str]:
-    """Return the names of what studies offer."""
-    return sorted(entry.name for entry in entry_points(group=OFFERS))
-
-
 def studied(name: str) -> Any:
     """Return what a study offers under a name; raises ConfigError where none does."""
     for entry in entry_points(group=OFFERS, name=name):

@@ -71,6 +71,7 @@ def test_the_linear_model_of_a_turn_has_nine_states(turn):
     _, point = turn
     model = ts.linearize(point)
     assert model.states == ("u", "v", "w", "p", "q", "r", "phi", "theta", "psi")
+    assert ts.linearize(point, loop="closed").states == model.states
     assert np.abs(model.A[:, 8]).max() < 1e-9  # heading is of no account in calm air
 
 

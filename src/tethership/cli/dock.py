@@ -17,8 +17,7 @@ from tethership.cli.common import (
     chosen_scenario,
     writable_folder,
 )
-from tethership.cli.completion import complete_solver
-from tethership.cli.flown import LayersOption, NoSasOption, Stages, again, split, summary, tell
+from tethership.cli.flown import LayersOption, NoSasOption, SolverOption, Stages, again, split, summary, tell
 from tethership.cli.points import trimmed_start
 from tethership.cli.tables import CsvOption, writable_csv
 from tethership.errors import ConfigError
@@ -37,9 +36,7 @@ def dock(
     trust: TrustOption = False,
     layers: LayersOption = None,
     no_sas: NoSasOption = False,
-    solver: Annotated[
-        str, typer.Option(help="adaptive, tight, fixed, or a path that ends in .toml.", autocompletion=complete_solver)
-    ] = "adaptive",
+    solver: SolverOption = "adaptive",
     from_: Annotated[Path | None, typer.Option("--from", help="Fly the stored input of a flight file again.")] = None,
     changes: SetOption = None,
     out: OutOption = Path("out"),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tethership.cli.common import NO_ANSWER, print_json, stage
-from tethership.cli.completion import complete_layers
+from tethership.cli.completion import complete_layers, complete_solver
 from tethership.cli.points import warn
 from tethership.cli.tables import Row, print_table, write_rows
 from tethership.results.files import write_together
@@ -23,6 +23,9 @@ LayersOption = Annotated[
         help="Of rewind,heading,navigation, by commas; none for SAS alone. Default: the scenario's.",
         autocompletion=complete_layers,
     ),
+]
+SolverOption = Annotated[
+    str, typer.Option(help="adaptive, tight, fixed, or a path that ends in .toml.", autocompletion=complete_solver)
 ]
 NoSasOption = Annotated[bool, typer.Option("--no-sas", help="Switch SAS/attitude off.")]
 

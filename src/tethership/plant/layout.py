@@ -1,4 +1,4 @@
-"""Layout: names, units and scales of all states of a closed loop, in the order of its vector. Depends on: plant.
+"""Layout: names and units of all states of a closed loop, in the order of its vector. Depends on: plant.
 
 Nobody counts places by hand: a part that has states gives their names here, and files, linear models and modes follow.
 """
@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from tethership.plant.loop import ClosedLoop
-from tethership.plant.names import HELD, LENGTH, MEMORY, NEXT, REACHED
+from tethership.plant.names import HELD, LENGTH, MEMORY, NEXT, REACHED, REWIND_RATE
 from tethership.plant.plant import TetheredAirship
 from tethership.plant.state import STATE_NAMES, STATE_UNITS, ActuatorState, Command, State
 
@@ -32,10 +32,6 @@ class Layout(NamedTuple):
     def plus(self, other: "Layout") -> "Layout":
         """Return this layout with another one behind it."""
         return Layout(self.names + other.names, self.units + other.units)
-
-    def places(self, start: str) -> list[int]:
-        """Return the places of all states whose names begin so."""
-        return [place for place, name in enumerate(self.names) if name.startswith(start)]
 
 
 SHIP = Layout(STATE_NAMES, STATE_UNITS)
@@ -66,7 +62,7 @@ def closed_loop(loop: ClosedLoop) -> Layout:
     if loop.sampling is None:
         return layout
     channels = Layout(
-        (*names.channels, *(f"rewind_rate_{name}" for name in names.cables)),
+        (*names.channels, *(f"{REWIND_RATE}{name}" for name in names.cables)),
         ("1",) * len(names.thrusters) + ("rad",) * len(names.fins) + ("m/s",) * len(names.cables),
     )
     for prefix in (HELD,) if loop.sampling.delay is None else (HELD, NEXT):

@@ -239,6 +239,16 @@ class TetheredAirship(eqx.Module):
         )
         return dataclasses.replace(self, environment=self.environment.without_fluctuations(), cables=cables)
 
+    def with_winches_held(self) -> "TetheredAirship":
+        """Return the plant with winches that take in nothing by themselves; what laws ask they still do."""
+        cables = tuple(
+            dataclasses.replace(
+                cable, winch=dataclasses.replace(cable.winch, default_rate=jnp.zeros_like(cable.winch.default_rate))
+            )
+            for cable in self.cables
+        )
+        return dataclasses.replace(self, cables=cables)
+
     def anchor_velocity(self) -> Float[Array, "3"] | None:
         """Return the velocity over the ground of anchors that are under way [m/s]; None where they stand still."""
         under_way = [c.motion.mean_velocity() for c in self.cables if isinstance(c.motion, SteadyMotion)]

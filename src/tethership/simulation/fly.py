@@ -6,7 +6,6 @@ from collections.abc import Iterable, Mapping
 
 import diffrax
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 from tethership._version import __version__
@@ -84,7 +83,7 @@ def fly(
     acting, names, active = _law(scenario, law, layers, sas, own_laws or {})
     ends = Stop.of(scenario, stop)
     check_point(scenario, point)
-    plant = scenario.system if rewind else _held(scenario.system)
+    plant = scenario.system if rewind else scenario.system.with_winches_held()
     loop = build_loop(scenario.config, plant, point.command, acting)
     conditions = ends.conditions()
     vector, margins = begin(loop, conditions, start_state(scenario, point.state))
@@ -132,17 +131,6 @@ def _law(
     active = scenario.config.control.sas if sas is None else sas
     layered: LayeredLaw = scenario.law(names, active, switched=True)
     return layered.joined(own), names, active
-
-
-def _held(plant: TetheredAirship) -> TetheredAirship:
-    """Return the plant with winches that take in nothing by themselves."""
-    cables = tuple(
-        dataclasses.replace(
-            cable, winch=dataclasses.replace(cable.winch, default_rate=jnp.zeros_like(cable.winch.default_rate))
-        )
-        for cable in plant.cables
-    )
-    return dataclasses.replace(plant, cables=cables)
 
 
 def _labels(plant: TetheredAirship) -> dict[str, list[str]]:

@@ -121,7 +121,7 @@ def closed_model(
         Let the cables' lengths be states; else they are held, and inputs.
     """
     plant: TetheredAirship = scenario.system.at_mean()
-    loop = build_loop(scenario.config, _still(plant), command, scenario.law() if law is None else law)
+    loop = build_loop(scenario.config, plant.with_winches_held(), command, scenario.law() if law is None else law)
     layout, vector = closed_loop(loop), _settled(loop, state)
     free = [name for name in model.inputs if not name.startswith(LENGTH)]
     rate, A, U = map(np.asarray, loop_slopes(loop, vector, jnp.zeros(len(free))))
@@ -131,12 +131,12 @@ def closed_model(
     if sampling is not None:
         delay = 0.0 if sampling.delay is None else float(sampling.delay)
         look, act = map(np.asarray, _jumps(loop, vector))
+        moves = np.array([lengths or not name.startswith(LENGTH) for name in layout.names])[:, None]
+        A, U = np.where(moves, A, 0.0), np.where(moves, U, 0.0)  # a length that is held does not move within a period
         A, U = period_map(A, U, look, act, float(sampling.period), delay)
         attributes["sample_time"] = float(sampling.period)
-        dropped = (
-            *dropped,
-            HELD if sampling.delay is None else NEXT,
-        )  # overwritten at every look: no states of a period
+        # Overwritten at every look, so no state of a period.
+        dropped = (*dropped, HELD if sampling.delay is None else NEXT)
     names = layout.names
     kept = [i for i, name in enumerate(names) if not name.startswith(dropped)]
     held = [names.index(name) for name in model.inputs if name.startswith(LENGTH)] if not lengths else []
@@ -174,15 +174,6 @@ def state_matrix(loop: ClosedLoop, state: State) -> Float[Array, "n n"]:
     vector = loop.initial(state)
     slopes = jax.jacfwd(lambda x: loop.vector_field(jnp.zeros(()), x))(vector)
     return slopes[kept][:, kept]
-
-
-def _still(plant: TetheredAirship) -> TetheredAirship:
-    """Return the plant with winches that take in nothing by themselves: a length that runs away is no equilibrium."""
-    cables = tuple(
-        dataclasses.replace(c, winch=dataclasses.replace(c.winch, default_rate=jnp.zeros_like(c.winch.default_rate)))
-        for c in plant.cables
-    )
-    return dataclasses.replace(plant, cables=cables)
 
 
 def _comparable(model: LinearModel, names: list[str]) -> np.ndarray:

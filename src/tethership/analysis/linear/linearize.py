@@ -203,10 +203,10 @@ def linearize(
     if loop == "closed":
         if not isinstance(system, Scenario):
             raise ConfigError("linearize: a closed loop needs a scenario, which says its laws; a bare plant has none")
-        return closed_model(system, model, state, command, law, length_states)
+        model = closed_model(system, model, state, command, law, length_states)
     if _turning(system) is not None:  # heading and place go round: what stays are the other states
         return model.without_position()
-    return _with_lengths(model, plant) if length_states else model
+    return _with_lengths(model, plant) if length_states and loop == "open" else model
 
 
 def _check_dividable(mass: np.ndarray, pitch: float) -> None:
