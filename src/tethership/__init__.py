@@ -58,8 +58,10 @@ if TYPE_CHECKING:
     )
     from tethership.campaign import Campaign, open_results, run_campaign
     from tethership.control import AbstractLaw, Correction, Measurement, Request
+    from tethership.plant import AbstractPart
     from tethership.scenario import Scenario, list_packaged, list_parameters, load_scenario, scenario_at
     from tethership.simulation import Flight, Outcome, Stop, dock, fly, fly_again
+    from tethership.spatial import Wrench
     from tethership.view import (
         interactive_root_locus,
         plot_campaign,
@@ -72,6 +74,7 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "AbstractLaw": "control",
+    "AbstractPart": "plant",
     "Campaign": "campaign",
     "Correction": "control",
     "Flight": "simulation",
@@ -86,6 +89,7 @@ _HOMES = {
     "Sweep": "analysis",
     "TrimOutcome": "analysis",
     "TrimPoint": "analysis",
+    "Wrench": "spatial",
     "dock": "simulation",
     "fly": "simulation",
     "fly_again": "simulation",
@@ -129,6 +133,7 @@ _PARTS = (
 
 __all__ = [
     "AbstractLaw",
+    "AbstractPart",
     "Campaign",
     "ConfigError",
     "Correction",
@@ -147,6 +152,7 @@ __all__ = [
     "TethershipWarning",
     "TrimOutcome",
     "TrimPoint",
+    "Wrench",
     "__version__",
     "dock",
     "fly",

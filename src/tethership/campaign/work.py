@@ -12,7 +12,7 @@ from tethership.errors import ConfigError
 from tethership.scenario import Scenario, scenario_at
 from tethership.scenario.control_schema import LAYERS
 from tethership.scenario.load import from_document
-from tethership.scenario.own_laws import find_beside
+from tethership.scenario.own_code import find_beside
 from tethership.simulation import Flight, dock
 
 COMPARED = ("docking_time", "tension_max", "tension_mean", "ADC", "E", "theta_rms")

@@ -179,7 +179,7 @@ def _computed(
     """Return forces, shape, and what must be known of them; positions and vectors in ground axes, SI, angles in deg."""
     import jax.numpy as jnp
 
-    from tethership.plant.plant import cable_along, cable_between
+    from tethership.plant import cable_along, cable_between
 
     scenario = line.scenario
     cable, environment = scenario.system.cables[line.place], scenario.system.environment

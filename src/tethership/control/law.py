@@ -37,6 +37,8 @@ class Measurement(NamedTuple):
         Unstretched length L_t [m].
     rewind_rate : Float[Array, "cables"]
         Default rewind rate of each winch Ψ̄ [m/s].
+    readings : mapping of str to Float[Array, ""]
+        What parts of one's own read, by the part's name, in its unit.
     """
 
     velocity: Float[Array, "3"]
@@ -47,6 +49,7 @@ class Measurement(NamedTuple):
     tension: Float[Array, "cables"]
     length: Float[Array, "cables"]
     rewind_rate: Float[Array, "cables"]
+    readings: Mapping[str, Any] = {}
 
 
 class Correction(NamedTuple):

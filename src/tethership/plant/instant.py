@@ -5,7 +5,8 @@ from typing import Any, NamedTuple
 from jaxtyping import Array, Float
 
 from tethership.control.law import Measurement
-from tethership.plant.plant import CableState
+from tethership.plant.cable import CableState
+from tethership.plant.part import PartStates
 from tethership.plant.state import Command, PlantState, State
 from tethership.spatial import Wrench
 
@@ -32,6 +33,8 @@ class Instant(NamedTuple):
         Ψ [m/s].
     loads : dict[str, Wrench]
         Named loads about P, body axes.
+    part_rates : tuple of Float[Array, "states"]
+        Rates of the states of parts of one's own [their unit per second].
     memory_rate : Any
         Rate of the law's memory.
     """
@@ -45,6 +48,7 @@ class Instant(NamedTuple):
     fins_saturated: Float[Array, "fins"]
     rewind_rate: Float[Array, "cables"]
     loads: dict[str, Wrench]
+    part_rates: PartStates
     memory_rate: Any
 
     @property

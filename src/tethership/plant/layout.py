@@ -13,6 +13,7 @@ from jaxtyping import Array, Float
 
 from tethership.plant.loop import ClosedLoop
 from tethership.plant.names import HELD, LENGTH, MEMORY, NEXT, REACHED, REWIND_RATE
+from tethership.plant.part import PartStates
 from tethership.plant.plant import TetheredAirship
 from tethership.plant.state import STATE_NAMES, STATE_UNITS, ActuatorState, Command, State
 
@@ -46,9 +47,19 @@ def actuators(plant: TetheredAirship) -> Layout:
     return Layout(throttles + deflections, ("1",) * len(throttles) + ("rad",) * len(deflections))
 
 
+def parts(plant: TetheredAirship) -> Layout:
+    """Return the states of the parts of one's own, `part.state`."""
+    own = [
+        (f"{name}.{state}", unit)
+        for name, part in zip(plant.part_names.parts, plant.parts, strict=True)
+        for state, unit in part.states()
+    ]
+    return Layout(tuple(name for name, _ in own), tuple(unit for _, unit in own))
+
+
 def open_loop(plant: TetheredAirship) -> Layout:
-    """Return the states of a plant whose channels are inputs: ship, then actuators."""
-    return SHIP.plus(actuators(plant))
+    """Return the states of a plant whose channels are inputs: ship, actuators, parts of one's own."""
+    return SHIP.plus(actuators(plant)).plus(parts(plant))
 
 
 def closed_loop(loop: ClosedLoop) -> Layout:
@@ -58,7 +69,7 @@ def closed_loop(loop: ClosedLoop) -> Layout:
     memories = jax.eval_shape(lambda: loop.unpack(jnp.zeros(size(loop))).law)
     count = sum(int(np.prod(leaf.shape)) for leaf in jax.tree.leaves(memories))
     memory = Layout(tuple(f"{MEMORY}{i + 1}" for i in range(count)), ("1",) * count)
-    layout = SHIP.plus(lengths).plus(actuators(loop.plant)).plus(memory)
+    layout = SHIP.plus(lengths).plus(actuators(loop.plant)).plus(parts(loop.plant)).plus(memory)
     if loop.sampling is None:
         return layout
     channels = Layout(
@@ -77,12 +88,32 @@ def size(loop: ClosedLoop) -> int:
 
 
 def open_state(plant: TetheredAirship, state: State, command: Command) -> Float[Array, "n"]:
-    """Return the vector of `open_loop` at a point: the actuators have reached the command."""
+    """Return the vector of `open_loop` at a point: actuators have reached the command, parts are at rest."""
+    now = jnp.zeros(())
     own = plant.actuators_at_rest(command)
-    return jnp.concatenate([state.as_vector(), own.thrusters, own.surfaces])
+    cables = plant.cable_states(now, state, plant.initial_lengths())
+    return jnp.concatenate([state.as_vector(), *own, *plant.parts_at_rest(now, state, cables)])
 
 
-def split_open(plant: TetheredAirship, vector: Float[Array, "n"]) -> tuple[State, ActuatorState]:
-    """Return the states of ship and actuators from the vector of `open_loop`."""
-    first = len(STATE_NAMES) + len(plant.thrusters.slow)
-    return State.from_vector(vector), ActuatorState(vector[len(STATE_NAMES) : first], vector[first:])
+class OpenState(NamedTuple):
+    """States of a plant whose channels are inputs.
+
+    Attributes
+    ----------
+    ship : State
+    actuators : ActuatorState
+    parts : tuple of Float[Array, "states"]
+    """
+
+    ship: State
+    actuators: ActuatorState
+    parts: PartStates
+
+
+def split_open(plant: TetheredAirship, vector: Float[Array, "n"]) -> OpenState:
+    """Return the states of ship, actuators and parts from the vector of `open_loop`."""
+    counts = [len(STATE_NAMES), len(plant.thrusters.slow), len(plant.surfaces.slow)]
+    counts += [len(part.states()) for part in plant.parts]
+    ends = np.cumsum(counts)
+    ship, throttles, deflections, *own = (vector[end - n : end] for n, end in zip(counts, ends, strict=True))
+    return OpenState(State.from_vector(ship), ActuatorState(throttles, deflections), tuple(own))

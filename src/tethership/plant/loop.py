@@ -2,7 +2,7 @@
 
 `instant` is everything at one time, `rate` the time derivative of all states, `look` and `act` the only places where a
 state jumps. A vector of all states is in the order of `Layout`: ship, cable lengths, actuators, law, what a sampled law
-holds; parts without states take no room.
+holds; parts without states take no room. The parts of one's own come after the actuators.
 """
 
 from collections.abc import Mapping
@@ -17,8 +17,9 @@ from jaxtyping import Array, Float
 from tethership.control.law import AbstractLaw, Asked, Correction, Measurement
 from tethership.control.sampling import Held, Sampling
 from tethership.errors import ConfigError, suggestion
+from tethership.plant.cable import CableState
 from tethership.plant.instant import Instant
-from tethership.plant.plant import CableState, TetheredAirship
+from tethership.plant.plant import TetheredAirship, reading_names
 from tethership.plant.ship import derivative
 from tethership.plant.state import Command, PlantState, State
 from tethership.spatial import rotation_matrix, safe_norm
@@ -47,11 +48,13 @@ class ClosedLoop(eqx.Module):
 
     def rest(self, state: State) -> PlantState:
         """Return all states at the start of a flight: every part at its rest about a state of the ship."""
-        lengths = self.plant.initial_lengths()
-        cables = self.plant.cable_states(jnp.zeros(()), state, lengths)
-        memory = self.law.initial_memory(self.measure(state, lengths, cables))
+        now, lengths = jnp.zeros(()), self.plant.initial_lengths()
+        cables = self.plant.cable_states(now, state, lengths)
+        parts = self.plant.parts_at_rest(now, state, cables)
+        told = self.plant.readings(now, state, cables, parts)
+        memory = self.law.initial_memory(self.measure(state, lengths, cables, told))
         actuators = self.plant.actuators_at_rest(self._clipped(self.trimmed))
-        return PlantState(state, lengths, actuators, memory, self._held_at_first())
+        return PlantState(state, lengths, actuators, parts, memory, self._held_at_first())
 
     def initial(self, state: State) -> Float[Array, "n"]:
         """Return `rest` as one vector."""
@@ -65,9 +68,12 @@ class ClosedLoop(eqx.Module):
         """Return states of the right structure, all zero."""
         count = len(self.plant.cables)
         zero, none, many = jnp.zeros(3), jnp.zeros(()), jnp.zeros(count)
-        seen = Measurement(zero, zero, zero, none, jnp.zeros((count, 3)), many, many, many)
+        told = dict.fromkeys(reading_names(self.plant), none)
+        seen = Measurement(zero, zero, zero, none, jnp.zeros((count, 3)), many, many, many, told)
         actuators = self.plant.actuators_at_rest(self.trimmed)
-        return PlantState(State.at_rest(zero), many, actuators, self.law.initial_memory(seen), self._held_at_first())
+        parts = tuple(jnp.zeros(len(part.states())) for part in self.plant.parts)
+        memory = self.law.initial_memory(seen)
+        return PlantState(State.at_rest(zero), many, actuators, parts, memory, self._held_at_first())
 
     def _held_at_first(self) -> Any:
         """Return what a sampled law holds before it has looked: no correction."""
@@ -80,8 +86,14 @@ class ClosedLoop(eqx.Module):
         )
         return Held(none, () if self.sampling.delay is None else none)
 
-    def measure(self, state: State, lengths: Float[Array, "cables"], cables: tuple[CableState, ...]) -> Measurement:
-        """Return what the sensors say: nothing of the plant but this reaches a law."""
+    def measure(
+        self,
+        state: State,
+        lengths: Float[Array, "cables"],
+        cables: tuple[CableState, ...],
+        told: Mapping[str, Any] | None = None,
+    ) -> Measurement:
+        """Return what the sensors say: nothing of the plant but this reaches a law; `told` by parts of one's own."""
         rotation = rotation_matrix(state.attitude)
         velocity_b = state.velocity + jnp.cross(state.rates, self.plant.ship.buoyancy.centre)
         count = len(cables)
@@ -94,6 +106,7 @@ class ClosedLoop(eqx.Module):
             tension=jnp.stack([safe_norm(c.ship) for c in cables]) if count else jnp.zeros(0),
             length=lengths,
             rewind_rate=jnp.stack([c.winch.default_rate for c in self.plant.cables]) if count else jnp.zeros(0),
+            readings=told or {},
         )
 
     def allocated(self, asked: Asked) -> Correction:
@@ -139,7 +152,8 @@ class ClosedLoop(eqx.Module):
         """Return everything at time t [s] for a vector of all states."""
         now = self.unpack(vector)
         cables = self.plant.cable_states(time, now.ship, now.lengths)
-        measurement = self.measure(now.ship, now.lengths, cables)
+        told = self.plant.readings(time, now.ship, cables, now.parts)
+        measurement = self.measure(now.ship, now.lengths, cables, told)
         if self.sampling is None:
             wish, memory_rate = self.law(time, measurement, now.law)
             correction = self.allocated(wish)
@@ -148,7 +162,8 @@ class ClosedLoop(eqx.Module):
         wanted = self._asked(correction)
         asked = self._clipped(wanted)
         command = self.plant.actuated(now.actuators, asked)
-        loads = self.plant.wrenches(time, now.ship, command, cables)
+        loads = self.plant.wrenches(time, now.ship, command, cables, now.parts)
+        part_rates = self.plant.part_rates(time, now.ship, cables, now.parts)
         return Instant(
             now,
             cables,
@@ -159,6 +174,7 @@ class ClosedLoop(eqx.Module):
             wanted.deflection != asked.deflection,
             self._rewind(correction),
             loads,
+            part_rates,
             memory_rate,
         )
 
@@ -171,7 +187,7 @@ class ClosedLoop(eqx.Module):
         ship = derivative(at.now.ship, at.loads, self.plant.ship, self.plant.environment)
         actuators = self.plant.actuator_rates(at.now.actuators, at.asked)
         held = jax.tree.map(jnp.zeros_like, at.now.held)
-        return ravel_pytree(PlantState(ship, -at.rewind_rate, actuators, at.memory_rate, held))[0]
+        return ravel_pytree(PlantState(ship, -at.rewind_rate, actuators, at.part_rates, at.memory_rate, held))[0]
 
     def look(self, time: Float[Array, ""], vector: Float[Array, "n"]) -> Float[Array, "n"]:
         """Return all states after a sampled law has looked at t = kT [s]: its correction waits for the delay, or acts.

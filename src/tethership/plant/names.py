@@ -40,17 +40,18 @@ class PartNames(NamedTuple):
 
     Attributes
     ----------
-    thrusters, fins, cables : tuple of str
+    thrusters, fins, cables, parts : tuple of str
     """
 
     thrusters: tuple[str, ...]
     fins: tuple[str, ...]
     cables: tuple[str, ...]
+    parts: tuple[str, ...] = ()
 
     @classmethod
-    def numbered(cls, thrusters: int, fins: int, cables: int) -> "PartNames":
-        """Return names with numbers: thruster_1, fin_1, cable_1 and so on."""
-        counts = {"thruster": thrusters, "fin": fins, "cable": cables}
+    def numbered(cls, thrusters: int, fins: int, cables: int, parts: int = 0) -> "PartNames":
+        """Return names with numbers: thruster_1, fin_1, cable_1, part_1 and so on."""
+        counts = {"thruster": thrusters, "fin": fins, "cable": cables, "part": parts}
         return cls(*(tuple(f"{kind}_{i + 1}" for i in range(count)) for kind, count in counts.items()))
 
     @property

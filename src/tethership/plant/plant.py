@@ -1,158 +1,24 @@
-"""Ship and cables together: one more named load per cable. Depends on: physics, plant."""
+"""Ship, cables and parts of one's own together: one more named load for each of them. Depends on: physics, plant."""
 
 import dataclasses
-from typing import Any, NamedTuple
+from typing import Any
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from tethership.errors import ConfigError
 from tethership.physics.actuators import Actuators
-from tethership.physics.anchor import AbstractAnchorMotion, HarmonicMotion, SteadyMotion
-from tethership.physics.cable import AbstractTensionLaw, CableLoad
-from tethership.physics.winch import Winch
+from tethership.physics.anchor import HarmonicMotion, SteadyMotion
+from tethership.plant.cable import Cable, CableState
+from tethership.plant.cable_between import cable_between as cable_between
 from tethership.plant.environment import Environment
 from tethership.plant.names import PartNames
+from tethership.plant.part import AbstractPart, PartStates, Seen, says
 from tethership.plant.ship import Airship, derivative, wrenches
 from tethership.plant.state import ActuatorState, Command, State
-from tethership.spatial import Wrench, rotation_matrix, safe_norm
-
-
-class CableState(NamedTuple):
-    """What one cable does at one instant, ground axes.
-
-    Attributes
-    ----------
-    span : Float[Array, "3"]
-        d = x_TP − x_AP [m].
-    ship : Float[Array, "3"]
-        Force of the cable on the ship [N].
-    anchor : Float[Array, "3"]
-        Force of the cable on the anchor [N].
-    load : Float[Array, "3"]
-        Load per unit length l [N/m].
-    place : Float[Array, "3"]
-        Where the anchor is x_AP [m].
-    """
-
-    span: Float[Array, "3"]
-    ship: Float[Array, "3"]
-    anchor: Float[Array, "3"]
-    load: Float[Array, "3"]
-    place: Float[Array, "3"]
-
-
-class Cable(eqx.Module):
-    """One cable from the ship to the ground.
-
-    Attributes
-    ----------
-    tether_point : Float[Array, "3"]
-        TP from P, body axes, q_TP [m].
-    anchor : Float[Array, "3"]
-        x_AP, ground axes [m]; where it moves, the place that it moves about or from.
-    length : float
-        Unstretched length at the start L_t [m].
-    breaking_force : float
-        F_b [N].
-    load : CableLoad
-        Weight and drag.
-    law : AbstractTensionLaw
-        Tension from span, length and load.
-    winch : Winch
-        Its drive at the anchor.
-    load_reference : float
-        Where the reference point C of the cable's wind load sits, as a fraction of the span from the anchor [-]; ½ is
-        the mid-point.
-    motion : AbstractAnchorMotion, optional
-        Of the anchor; none for one that stands still.
-    """
-
-    tether_point: Float[Array, "3"]
-    anchor: Float[Array, "3"]
-    length: Float[Array, ""]
-    breaking_force: Float[Array, ""]
-    load: CableLoad
-    law: AbstractTensionLaw
-    winch: Winch
-    load_reference: Float[Array, ""]
-    motion: AbstractAnchorMotion | None = None
-
-    def state(
-        self, time: Float[Array, ""], state: State, length: Float[Array, ""], environment: Environment
-    ) -> CableState:
-        """Return the cable's forces for a state of the ship.
-
-        Parameters
-        ----------
-        time : Float[Array, ""]
-            t [s].
-        state : State
-            Of the ship.
-        length : Float[Array, ""]
-            Present unstretched length L_t [m].
-        environment : Environment
-            Wind and density at the reference point C of Eqs. 15–18; on the chord between the ends C moves at its
-            fraction of the velocity of TP and the rest of that of the anchor.
-        """
-        rotation = rotation_matrix(state.attitude)
-        place, drawn = self.anchor, None
-        if self.motion is not None:
-            place, drawn = place + self.motion.displacement(time), self.motion.velocity(time)
-        span = state.position + rotation @ self.tether_point - place
-        velocity = rotation @ (state.velocity + jnp.cross(state.rates, self.tether_point))
-        wind = environment.wind_at(place + self.load_reference * span, time)
-        return self.between(span, velocity, length, wind, environment, place, drawn)
-
-    def between(
-        self,
-        span: Float[Array, "3"],
-        velocity: Float[Array, "3"],
-        length: Float[Array, ""],
-        wind: Float[Array, "3"],
-        environment: Environment,
-        place: Float[Array, "3"] | None = None,
-        drawn: Float[Array, "3"] | None = None,
-    ) -> CableState:
-        """Return the cable's forces between two points, ground axes.
-
-        Parameters
-        ----------
-        span : Float[Array, "3"]
-            d = x_TP − x_AP [m].
-        velocity : Float[Array, "3"]
-            Ground velocity of TP [m/s].
-        length : Float[Array, ""]
-            L_t [m].
-        wind : Float[Array, "3"]
-            Wind at C [m/s].
-        environment : Environment
-            Gives the density there.
-        place, drawn : Float[Array, "3"], optional
-            Where an anchor is that moves [m], and its velocity [m/s]; the cable's own place, at rest, if not given.
-        """
-        place = self.anchor if place is None else place
-        density = environment.density_at(place + self.load_reference * span)
-        along = self.load_reference * velocity
-        if drawn is not None:
-            along = along + (1.0 - self.load_reference) * drawn
-        load = self.load.per_length(density, along - wind, span)
-        force = self.law.force(span, length, load)
-        return CableState(span, force.ship, force.anchor, load, place)
-
-    def lowest_point(self, cable: CableState, length: Float[Array, ""]) -> Float[Array, "3"]:
-        """Return the lowest point of the cable, ground axes [m]; arguments as `state` returns them.
-
-        Notes
-        -----
-        The tension vector at s is F_AP − l s: level where its down component vanishes, else an end is lowest.
-        """
-        down = cable.load[2]
-        level = cable.anchor[2] / jnp.where(jnp.abs(down) > 0, down, 1.0)
-        arc = jnp.stack([jnp.zeros_like(length), jnp.clip(level, 0.0, length), length])
-        points = cable.place + self.law.shape(cable.span, length, cable.load, arc)
-        return points[jnp.argmax(points[:, 2])]
+from tethership.spatial import Wrench, rotation_matrix
 
 
 class TetheredAirship(eqx.Module):
@@ -165,8 +31,12 @@ class TetheredAirship(eqx.Module):
     cables : tuple of Cable
     thrusters, surfaces : Actuators
         What throttles and deflections do with what they are asked.
+    parts : tuple of AbstractPart
+        Parts of the ship with loads, states or readings of their own.
+    origin : Float[Array, "3"]
+        O, the origin of the vehicle file's axes that parts refer to, from P, body axes [m].
     names : PartNames
-        Names of thrusters, fins and cables; numbered where none are given.
+        Names of thrusters, fins, cables and parts; numbered where none are given.
     """
 
     ship: Airship
@@ -174,14 +44,16 @@ class TetheredAirship(eqx.Module):
     cables: tuple[Cable, ...]
     thrusters: Actuators = eqx.field(default_factory=Actuators.ideal)
     surfaces: Actuators = eqx.field(default_factory=Actuators.ideal)
+    parts: tuple[AbstractPart, ...] = ()
+    origin: Float[Array, "3"] = eqx.field(default_factory=lambda: jnp.zeros(3))
     names: PartNames | None = eqx.field(static=True, default=None)
 
     @property
     def part_names(self) -> PartNames:
-        """Names of thrusters, fins and cables."""
+        """Names of thrusters, fins, cables and parts."""
         if self.names is not None:
             return self.names
-        return PartNames.numbered(self.ship.thrusters.count, self.ship.fins.count, len(self.cables))
+        return PartNames.numbered(self.ship.thrusters.count, self.ship.fins.count, len(self.cables), len(self.parts))
 
     def actuated(self, own: ActuatorState, asked: Command) -> Command:
         """Return what the actuated channels do, for their states and what they are asked."""
@@ -205,14 +77,71 @@ class TetheredAirship(eqx.Module):
         """Return the state of each cable at time t [s] for lengths L_t [m]."""
         return tuple(cable.state(time, state, lengths[i], self.environment) for i, cable in enumerate(self.cables))
 
+    def seen(self, time: Float[Array, ""], state: State, cable_states: tuple[CableState, ...]) -> Seen:
+        """Return what the parts meet at t [s], about O; arguments as in `wrenches`."""
+        around, gravity = self.environment, self.environment.gravity
+        rotation = rotation_matrix(state.attitude)
+        met = self.ship.met(time, state, around)
+        position = state.position + rotation @ self.origin
+        return Seen(
+            velocity=state.velocity + jnp.cross(state.rates, self.origin),
+            air_velocity=met.at_p + jnp.cross(met.rates, self.origin),
+            rates=state.rates,
+            air_rates=met.rates,
+            attitude=state.attitude,
+            position=position,
+            height=around.ground - position[2],
+            density=met.air.density,
+            gravity=rotation.T @ gravity,
+            cables=tuple(cable.ship for cable in cable_states),
+        )
+
+    def parts_at_rest(self, time: Float[Array, ""], state: State, cable_states: tuple[CableState, ...]) -> PartStates:
+        """Return the states of the parts that no longer change, in their units."""
+        if not self.parts:
+            return ()
+        seen = self.seen(time, state, cable_states)
+        return tuple(part.rest(seen) for part in self.parts)
+
+    def part_rates(
+        self, time: Float[Array, ""], state: State, cable_states: tuple[CableState, ...], own: PartStates
+    ) -> PartStates:
+        """Return the rates of the parts' states [their unit per second]."""
+        if not self.parts:
+            return ()
+        seen = self.seen(time, state, cable_states)
+        return tuple(part.rate(time, x, seen) for part, x in zip(self.parts, own, strict=True))
+
+    def readings(
+        self, time: Float[Array, ""], state: State, cable_states: tuple[CableState, ...], own: PartStates
+    ) -> dict[str, Float[Array, ""]]:
+        """Return what the parts tell the laws, by name."""
+        if not self.parts:
+            return {}
+        seen = self.seen(time, state, cable_states)
+        told = (part.reading(time, x, seen) for part, x in zip(self.parts, own, strict=True))
+        return {name: jnp.asarray(it) for name, it in zip(self.part_names.parts, told, strict=True) if it is not None}
+
     def wrenches(
         self,
         time: Float[Array, ""],
         state: State,
         command: Command,
         cable_states: tuple[CableState, ...],
+        own: PartStates | None = None,
     ) -> dict[str, Wrench]:
         """Return every load by name, cables as `cable_1`, `cable_2`, …, about P, body axes [N, N m].
+
+        Parameters
+        ----------
+        time : Float[Array, ""]
+            t [s].
+        state, command
+            As in `plant.wrenches`.
+        cable_states : tuple of CableState
+            From `cable_states`.
+        own : tuple of Float[Array, "states"], optional
+            States of the parts; at rest if not given.
 
         Notes
         -----
@@ -222,13 +151,35 @@ class TetheredAirship(eqx.Module):
         to_body = rotation_matrix(state.attitude).T
         for i, (cable, force) in enumerate(zip(self.cables, cable_states, strict=True)):
             loads[f"cable_{i + 1}"] = Wrench.at(cable.tether_point, to_body @ force.ship)
-        return loads
+        own_loads = self._part_loads(time, state, cable_states, own)
+        if twice := set(own_loads) & set(loads):
+            raise ConfigError(f"a part is named {twice.pop()!r}, as another load on the ship; give it another name")
+        return loads | own_loads
+
+    def _part_loads(
+        self, time: Float[Array, ""], state: State, cable_states: tuple[CableState, ...], own: PartStates | None
+    ) -> dict[str, Wrench]:
+        """Return the loads of the parts by name, about P, body axes [N, N m]."""
+        if not self.parts:
+            return {}
+        seen = self.seen(time, state, cable_states)
+        found = {}
+        for i, (name, part) in enumerate(zip(self.part_names.parts, self.parts, strict=True)):
+            load = part.wrench(time, part.rest(seen) if own is None else own[i], seen)
+            if load is not None:
+                found[name] = Wrench(load.force, load.moment + jnp.cross(self.origin, load.force))
+        return found
 
     def derivative(
-        self, time: Float[Array, ""], state: State, command: Command, lengths: Float[Array, "cables"]
+        self,
+        time: Float[Array, ""],
+        state: State,
+        command: Command,
+        lengths: Float[Array, "cables"],
+        own: PartStates | None = None,
     ) -> State:
         """Return the time derivative of the state; arguments as in `wrenches` and `cable_states`."""
-        loads = self.wrenches(time, state, command, self.cable_states(time, state, lengths))
+        loads = self.wrenches(time, state, command, self.cable_states(time, state, lengths), own)
         return derivative(state, loads, self.ship, self.environment)
 
     def at_mean(self) -> "TetheredAirship":
@@ -261,6 +212,12 @@ class TetheredAirship(eqx.Module):
         return jnp.stack([cable.length for cable in self.cables])
 
 
+def reading_names(plant: TetheredAirship) -> tuple[str, ...]:
+    """Return the names of the parts that tell the laws something."""
+    parts = zip(plant.part_names.parts, plant.parts, strict=True)
+    return tuple(name for name, part in parts if says(part, "reading"))
+
+
 _LOADS: dict[Any, tuple[str, ...]] = {}
 
 
@@ -282,91 +239,3 @@ def load_names(plant: TetheredAirship) -> tuple[str, ...]:
         jax.eval_shape(asked)
         _LOADS[structure] = tuple(found)
     return _LOADS[structure]
-
-
-def end_tension(cable: CableState) -> Float[Array, ""]:
-    """Return the largest tension along a cable [N]: it is at one of its ends."""
-    return jnp.maximum(safe_norm(cable.ship), safe_norm(cable.anchor))
-
-
-class CableBetween(NamedTuple):
-    """One cable between two given points, ground axes.
-
-    Attributes
-    ----------
-    ship, anchor : Float[Array, "3"]
-        Forces of the cable on the ship and on the anchor [N].
-    load : Float[Array, "3"]
-        l [N/m].
-    lowest : Float[Array, "3"]
-        Lowest point [m].
-    regime : Float[Array, ""]
-        0 slack, 1 joint, 2 taut.
-    """
-
-    ship: Float[Array, "3"]
-    anchor: Float[Array, "3"]
-    load: Float[Array, "3"]
-    lowest: Float[Array, "3"]
-    regime: Float[Array, ""]
-
-
-@eqx.filter_jit
-def cable_between(
-    cable: Cable,
-    environment: Environment,
-    end: Float[Array, "3"],
-    anchor: Float[Array, "3"],
-    length: Float[Array, ""],
-    velocity: Float[Array, "3"],
-    wind: Float[Array, "3"] | None,
-) -> CableBetween:
-    """Return forces and lowest point of a cable whose ends are given.
-
-    Parameters
-    ----------
-    cable, environment
-        Parameters.
-    end, anchor : Float[Array, "3"]
-        Ends, ground axes [m].
-    length : Float[Array, ""]
-        L_t [m].
-    velocity : Float[Array, "3"]
-        Ground velocity of the ship's end [m/s].
-    wind : Float[Array, "3"], optional
-        Wind at the reference point C [m/s]; the environment's at time zero if not given.
-    """
-    moved = eqx.tree_at(lambda c: c.anchor, cable, anchor)
-    span = end - anchor
-    if wind is None:
-        wind = environment.wind_at(anchor + cable.load_reference * span, jnp.zeros(()))
-    state = moved.between(span, velocity, jnp.asarray(length), wind, environment)
-    regime = cable.law.regime(safe_norm(span) / length)
-    lowest = moved.lowest_point(state, jnp.asarray(length))
-    return CableBetween(state.ship, state.anchor, state.load, lowest, regime)
-
-
-@eqx.filter_jit
-def cable_along(
-    cable: Cable, found: CableBetween, end: Float[Array, "3"], anchor: Float[Array, "3"], arc: Float[Array, "n"]
-) -> tuple[Float[Array, "n 3"], Float[Array, "n"]]:
-    """Return points of a cable, ground axes [m], and the tension there [N].
-
-    Parameters
-    ----------
-    cable : Cable
-        Parameters.
-    found : CableBetween
-        From `cable_between`, for the same ends.
-    end, anchor : Float[Array, "3"]
-        Ends, ground axes [m].
-    arc : Float[Array, "n"]
-        Unstretched distance from the anchor s [m], the last one being the length.
-
-    Notes
-    -----
-    The tension vector falls linearly from that at the anchor to that at the ship, t(s) = F_AP − (s/L)(F_AP + F_TP).
-    """
-    points = anchor + cable.law.shape(end - anchor, arc[-1], found.load, arc)
-    vectors = found.anchor - (arc / arc[-1])[:, None] * (found.anchor + found.ship)
-    return points, jnp.sqrt(jnp.sum(vectors**2, axis=1))

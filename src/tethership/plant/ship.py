@@ -3,6 +3,8 @@
 Depends on: physics, spatial, plant.state, plant.environment.
 """
 
+from typing import NamedTuple
+
 import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
@@ -15,9 +17,31 @@ from tethership.physics.gravity import Gravity
 from tethership.physics.hull import Strips
 from tethership.physics.rigid_body import RigidBody
 from tethership.physics.thrusters import Thrusters
-from tethership.plant.environment import Environment
+from tethership.plant.environment import Air, Environment
 from tethership.plant.state import Command, State
 from tethership.spatial import Wrench, euler_rates, rotation_matrix, solve_symmetric
+
+
+class Met(NamedTuple):
+    """The air as the ship meets it at one instant.
+
+    Attributes
+    ----------
+    air : Air
+        At B, ground axes.
+    wind : Float[Array, "3"]
+        Its velocity, body axes [m/s].
+    at_p, at_b : Float[Array, "3"]
+        Velocity through it of P and of B, body axes [m/s].
+    rates : Float[Array, "3"]
+        ω − ω_air, body axes [rad/s].
+    """
+
+    air: Air
+    wind: Float[Array, "3"]
+    at_p: Float[Array, "3"]
+    at_b: Float[Array, "3"]
+    rates: Float[Array, "3"]
 
 
 class Airship(eqx.Module):
@@ -53,6 +77,20 @@ class Airship(eqx.Module):
     def allowed(self, command: Command) -> Command:
         """Return a command clipped to what thrusters [-] and fins [rad] can do."""
         return Command(self.thrusters.saturate(command.throttle), self.fins.saturate(command.deflection))
+
+    def met(self, time: Float[Array, ""], state: State, environment: Environment) -> Met:
+        """Return the air as the ship meets it at t [s]."""
+        rotation = rotation_matrix(state.attitude)
+        to_body = rotation.T
+        centre = self.buoyancy.centre
+        velocity_b = state.velocity + jnp.cross(state.rates, centre)
+        air = environment.air(state.position + rotation @ centre, rotation @ velocity_b, rotation[:, 0], time)
+        wind = to_body @ air.wind
+        at_p, through_air = state.velocity - wind, state.rates
+        if air.rotation is not None:
+            turning = to_body @ air.rotation
+            through_air, at_p = through_air - turning, at_p + jnp.cross(turning, centre)
+        return Met(air, wind, at_p, velocity_b - wind, through_air)
 
     def lowest_point(self, state: State) -> Float[Array, ""]:
         """Return the down coordinate of the lowest point of the hull [m], ground axes."""
@@ -92,21 +130,10 @@ def wrenches(
     besides −Mᵃ ẇ. Where the air differs along the hull, envelope, fins and thrust meet ω − ω_air; the inertia of the
     air does not feel the difference.
     """
-    rotation = rotation_matrix(state.attitude)
-    to_body = rotation.T
-    centre = ship.buoyancy.centre
-    velocity_b = state.velocity + jnp.cross(state.rates, centre)
-    air = environment.air(state.position + rotation @ centre, rotation @ velocity_b, rotation[:, 0], time)
-    density = air.density
-    wind = to_body @ air.wind
+    to_body = rotation_matrix(state.attitude).T
+    air, wind, at_p, at_b, through_air = ship.met(time, state, environment)
+    density, rates = air.density, state.rates
     gravity = to_body @ environment.gravity
-    at_p = state.velocity - wind
-    at_b = velocity_b - wind
-    rates = state.rates
-    through_air = rates
-    if air.rotation is not None:
-        turning = to_body @ air.rotation
-        through_air, at_p = rates - turning, at_p + jnp.cross(turning, centre)
     return {
         "gravity": ship.gravity.wrench(gravity),
         "buoyancy": ship.buoyancy.wrench(density, gravity),

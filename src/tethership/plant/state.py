@@ -96,6 +96,8 @@ class PlantState(NamedTuple):
     lengths : Float[Array, "cables"]
         Unstretched length of each cable L_t [m], the state of its winch.
     actuators : ActuatorState
+    parts : tuple of Float[Array, "states"]
+        States of the parts of one's own.
     law : Any
         The law's memory.
     held : Any
@@ -105,5 +107,6 @@ class PlantState(NamedTuple):
     ship: State
     lengths: Float[Array, "cables"]
     actuators: ActuatorState
+    parts: tuple[Any, ...]
     law: Any
     held: Any

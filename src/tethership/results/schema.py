@@ -98,9 +98,11 @@ VARIABLES: dict[str, Variable] = {
     "wind": Variable("m/s", ("ground_axis",), "wind, gusts and ground effect at B", "ground"),
     "density": Variable("kg/m3", (), "density of the air at B"),
     "rate_of_climb": Variable("m/s", (), "upward ground velocity of B"),
-    "throttle": Variable("1", ("thruster",), "throttle after clipping"),
+    "throttle": Variable("1", ("thruster",), "throttle reached: after clipping, dead band, rate limit and lag"),
+    "throttle_asked": Variable("1", ("thruster",), "throttle asked of it, after clipping"),
     "saturated": Variable("1", ("thruster",), "1 where a thruster is asked for more than it has"),
-    "deflection": Variable("rad", ("fin",), "deflection of the fins after clipping"),
+    "deflection": Variable("rad", ("fin",), "deflection reached: after clipping, rate limit and lag"),
+    "deflection_asked": Variable("rad", ("fin",), "deflection asked of it, after clipping"),
     "deflection_saturated": Variable("1", ("fin",), "1 where a fin is asked for more than its limit"),
     "load_force": Variable("N", ("load", "body_axis"), "force of each named load", "body"),
     "load_moment": Variable("N m", ("load", "body_axis"), "moment of each named load about P", "body"),
@@ -117,9 +119,11 @@ VARIABLES: dict[str, Variable] = {
     "cable_length": Variable("m", ("cable",), "unstretched length"),
     "rewind_rate": Variable("m/s", ("cable",), "rate at which the winch takes cable in"),
     "misalignment": Variable("rad", ("cable",), "horizontal angle from nose to anchor, positive to port"),
+    "part_states": Variable("SI", ("part_state",), "states of parts of one's own, in their units"),
+    "readings": Variable("own", ("reading",), "what parts of one's own tell the laws, in their units"),
     "clearance": Variable("m", (), "height of the hull's lowest point above ground"),
 }
 """All outputs by name; every one has `time` [s] as its first dimension."""
 
-SINCE_LAYOUT_2 = ("deflection_saturated",)
+SINCE_LAYOUT_2 = ("deflection_saturated", "throttle_asked", "deflection_asked", "part_states", "readings")
 """Outputs that files of layout 1 lack."""

@@ -14,6 +14,8 @@ from tethership.plant import Cable, TetheredAirship
 from tethership.plant.names import PartNames
 from tethership.scenario.build_air import build_environment
 from tethership.scenario.build_ship import build_actuators, build_hull, build_ship, slice_integrals
+from tethership.scenario.own_code import make_line, make_part
+from tethership.scenario.own_schema import OwnLine
 from tethership.scenario.schema import (
     AnchorMotionConfig,
     CableConfig,
@@ -26,11 +28,6 @@ __all__ = ["assemble", "build_environment", "build_hull", "build_ship", "build_s
 
 
 def _cable(config: CableConfig, formulation: str, shift: Float[Array, "3"]) -> Cable:
-    law: AbstractTensionLaw
-    if config.line_model(formulation) == "published":
-        law = PublishedTension(*map(jnp.asarray, (config.stiffness, config.joint_start, config.joint_end)))
-    else:
-        law = ElasticCatenary(jnp.asarray(config.stiffness))
     return Cable(
         tether_point=jnp.asarray(config.tether_point) - shift,
         anchor=jnp.asarray(config.anchor),
@@ -42,11 +39,20 @@ def _cable(config: CableConfig, formulation: str, shift: Float[Array, "3"]) -> C
             jnp.asarray(config.cross_flow_drag_coefficient),
             jnp.asarray(config.longitudinal_drag_coefficient),
         ),
-        law=law,
+        law=_line(config, formulation),
         winch=Winch(jnp.asarray(config.winch.rewind_rate), jnp.asarray(config.winch.fastest_rate)),
         load_reference=jnp.asarray(config.load_reference),
         motion=_motion(config.anchor_motion),
     )
+
+
+def _line(config: CableConfig, formulation: str) -> AbstractTensionLaw:
+    """Return the model of a cable's line."""
+    if isinstance(config.line, OwnLine):
+        return make_line(config.line, config)
+    if config.line_model(formulation) == "published":
+        return PublishedTension(*map(jnp.asarray, (config.stiffness, config.joint_start, config.joint_end)))
+    return ElasticCatenary(jnp.asarray(config.stiffness))
 
 
 def build_system(config: ScenarioConfig, reference_point: Float[Array, "3"] | None = None) -> TetheredAirship:
@@ -58,13 +64,15 @@ def build_system(config: ScenarioConfig, reference_point: Float[Array, "3"] | No
         cables=tuple(_cable(cable, config.formulation, shift) for cable in config.cables),
         thrusters=build_actuators(config.vehicle.thrusters),
         surfaces=build_actuators(config.vehicle.fins),
+        parts=tuple(make_part(part) for part in config.vehicle.parts),
+        origin=-shift,
         names=part_names(config),
     )
 
 
 def part_names(config: ScenarioConfig) -> PartNames:
-    """Return the names of thrusters, fins and cables."""
-    parts = (config.vehicle.thrusters, config.vehicle.fins, config.cables)
+    """Return the names of thrusters, fins, cables and parts."""
+    parts = (config.vehicle.thrusters, config.vehicle.fins, config.cables, config.vehicle.parts)
     return PartNames(*(tuple(part.name for part in group) for group in parts))
 
 

@@ -54,12 +54,11 @@ def _change(document: Document, dotted: str, value: Any, origin: str) -> None:
     """Set one value by a name without `*`."""
     *path, last = dotted.split(".")
     place: Any = document
-    for step in path[:-1]:
-        place = _enter(place, step, dotted, origin)
-    if path and last.isascii() and last.isdigit() and _is_vector(place, path[-1]):
-        _set_component(place[path[-1]], last, value, f"{origin}: {shown(dotted)}")
-        return
-    for step in path[-1:]:
+    for i, step in enumerate(path):
+        rest = [*path[i + 1 :], last]
+        if _has_components(place, step, path[:i]) and all(_is_digits(number) for number in rest):
+            place[step] = _with_component(place[step], rest, value, f"{origin}: {shown(dotted)}")
+            return
         place = _enter(place, step, dotted, origin)
     if isinstance(place, list):
         place, last = _enter(place, last, dotted, origin), ""
@@ -72,17 +71,28 @@ def _change(document: Document, dotted: str, value: Any, origin: str) -> None:
     place[last] = value
 
 
-def _is_vector(table: Any, key: str) -> bool:
-    """Return whether a table's entry is a quantity that is a list of numbers."""
+def _is_digits(step: str) -> bool:
+    """Return whether a step is a place in a list."""
+    return step.isascii() and step.isdigit()
+
+
+def _has_components(table: Any, key: str, path: Sequence[str]) -> bool:
+    """Return whether a table's entry is a list of numbers, or of lists of them: a quantity, or a number of own code."""
     entry = table.get(key) if isinstance(table, dict) else None
+    if isinstance(entry, list):
+        return bool(path) and is_share(path) and _is_number(entry)
     return isinstance(entry, dict) and isinstance(entry.get("value"), list) and "unit" in entry
 
 
-def _set_component(entry: dict[str, Any], last: str, value: Any, what: str) -> None:
-    """Set one component of a vector, in the vector's own unit."""
-    place, numbers = int(last), list(entry["value"])
-    if len(last) > 8 or place >= len(numbers) or not all(_is_number(number) for number in numbers):
-        raise ConfigError(f"{what}: there is no component {last}; they are 0 to {len(numbers) - 1}")
+def _with_component(entry: Any, places: Sequence[str], value: Any, what: str) -> Any:
+    """Return a vector or matrix with one component set, in its own unit."""
+    if isinstance(entry, list):
+        return _with_number(entry, places, _component(value, SI_UNIT, what), what)
+    return {**entry, "value": _with_number(entry["value"], places, _component(value, entry["unit"], what), what)}
+
+
+def _component(value: Any, unit: str, what: str) -> float:
+    """Return a component in a unit [that unit]; without a unit of its own it is in SI."""
     if not isinstance(value, dict):
         value = {"value": value, "unit": SI_UNIT}
     if not isinstance(value.get("unit"), str):
@@ -90,15 +100,27 @@ def _set_component(entry: dict[str, Any], last: str, value: Any, what: str) -> N
     if not _is_number(value.get("value")) or isinstance(value["value"], list | tuple):
         raise ConfigError(f"{what}: {shown(value.get('value'))} is no number; give one, e.g. 1.5 or 1.5m")
     try:
-        numbers[place] = in_unit(value["value"], value["unit"], entry["unit"])
+        return in_unit(value["value"], value["unit"], unit)
     except ValueError as error:
         raise ConfigError(f"{what}: {error}") from error
-    entry["value"] = numbers
+
+
+def _with_number(numbers: Any, places: Sequence[str], value: float, what: str) -> Any:
+    """Return a list of numbers, or of lists of them, with one of them replaced."""
+    if not places:
+        if isinstance(numbers, list):
+            raise ConfigError(f"{what}: it is a list; name one of its items, 0 to {len(numbers) - 1}")
+        return value
+    first, *rest = places
+    if not isinstance(numbers, list) or len(first) > 8 or int(first) >= len(numbers) or not _is_number(numbers):
+        last = f"they are 0 to {len(numbers) - 1}" if isinstance(numbers, list) else "it is a number"
+        raise ConfigError(f"{what}: there is no component {first}; {last}")
+    return [_with_number(number, rest, value, what) if i == int(first) else number for i, number in enumerate(numbers)]
 
 
 def is_share(path: Sequence[str]) -> bool:
-    """Return whether the values under a path are a law's shares: plain numbers without a unit."""
-    return path[:1] == ["control"] and (path[-1].endswith("share") or path[-1] == "numbers")
+    """Return whether the values under a path are plain numbers without a unit: a law's shares, numbers of own code."""
+    return path[-1] == "numbers" or (path[:1] == ["control"] and path[-1].endswith("share"))
 
 
 def _is_number(value: Any) -> bool:

@@ -9,7 +9,8 @@ from typing import Annotated, Literal
 from pydantic import Field, field_validator, model_validator
 
 from tethership.errors import suggestion
-from tethership.scenario.names import Word, check_apart
+from tethership.scenario.names import check_apart
+from tethership.scenario.own_schema import OwnLawConfig
 from tethership.scenario.quantity import Quantity, Table
 
 LAYERS = ("rewind", "heading", "navigation")
@@ -80,17 +81,6 @@ class NavigationConfig(Table):
     range: Literal["along_nose", "line_of_sight"] = "along_nose"
     forward_share: Share = Field(default_factory=dict)
     vertical_share: Share = Field(default_factory=dict)
-
-
-class OwnLawConfig(Table):
-    """A law of one's own: `model = "module:Class"`, a subclass of `tethership.AbstractLaw`, and its numbers by name.
-
-    Its numbers are given to the class as they are, in units of its own. It runs only when told so (`--trust`).
-    """
-
-    name: Word
-    model: Annotated[str, Field(pattern=r"^[A-Za-z_][\w.]*:[A-Za-z_]\w*$", max_length=200)]
-    numbers: dict[str, float] = Field(default_factory=dict)
 
 
 class ControlConfig(Table):

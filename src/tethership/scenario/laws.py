@@ -19,7 +19,7 @@ from tethership.control import (
 from tethership.control.sampling import Sampling
 from tethership.plant import Command
 from tethership.scenario.control_schema import Share, Table
-from tethership.scenario.own_laws import make_law
+from tethership.scenario.own_code import make_law
 from tethership.scenario.schema import ScenarioConfig
 
 HEADING = {"full": HeadingLaw, "sine": SineHeadingLaw, "line": LineHeadingLaw}

@@ -2,7 +2,6 @@
 
 import copy
 import dataclasses
-import json
 import warnings
 from collections.abc import Iterable, Mapping
 from importlib import resources
@@ -13,13 +12,13 @@ from pydantic import ValidationError
 
 from tethership.control import LayeredLaw
 from tethership.errors import ConfigError, TethershipWarning, shown, suggestion
-from tethership.plant import TetheredAirship
+from tethership.plant import AbstractPart, TetheredAirship
 from tethership.scenario.build import assemble
 from tethership.scenario.changes import Document, change
 from tethership.scenario.control_schema import check_layers
 from tethership.scenario.laws import build_law
 from tethership.scenario.messages import first_problem
-from tethership.scenario.own_laws import find_beside
+from tethership.scenario.own_code import as_entry, find_beside
 from tethership.scenario.quantity import Table
 from tethership.scenario.reading import parse_toml, read_text
 from tethership.scenario.schema import ScenarioConfig
@@ -45,7 +44,7 @@ class Scenario:
     system : TetheredAirship
         The plant.
     trusted : bool
-        Whether laws of one's own that it names may be run.
+        Whether code of one's own that it names may be run.
     """
 
     name: str
@@ -103,12 +102,31 @@ class Scenario:
 
     def check_trust(self) -> None:
         """Raise ConfigError where the scenario names code of one's own, and nobody said that it may run."""
-        if self.config.control.laws and not self.trusted:
-            named = ", ".join(law.model for law in self.config.control.laws)
-            raise ConfigError(
-                f"{self.name} names code of one's own, {named}, which runs only when told so: --trust, or "
-                "load_scenario(..., trust=True)"
-            )
+        _check_trust(self.name, self.config.own_code(), self.trusted)
+
+    def with_parts(self, parts: Mapping[str, AbstractPart]) -> "Scenario":
+        """Return the scenario with parts of one's own on its ship, by name; those of a name that is there replace it.
+
+        They are kept in the scenario as a file would name them, by class and numbers, so that workers, stored flights
+        and campaigns have them too; their code is trusted.
+
+        Raises
+        ------
+        ConfigError
+            One is no part, its class is not at the top of a module, or a field is no number.
+        """
+        entries = {part["name"]: part for part in self.document["vehicle"].get("parts", [])}
+        entries |= {name: as_entry(name, part) for name, part in parts.items()}
+        return from_document(self.document, self.name, {"vehicle.parts": list(entries.values())}, trusted=True)
+
+
+def _check_trust(name: str, code: list[str], trusted: bool) -> None:
+    """Raise ConfigError where there is code of one's own, and nobody said that it may run."""
+    if code and not trusted:
+        raise ConfigError(
+            f"{name} names code of one's own, {', '.join(code)}, which runs only when told so: --trust, or "
+            "load_scenario(..., trust=True)"
+        )
 
 
 KINDS = ("scenarios", "vehicles", "solvers", "campaigns")
@@ -165,7 +183,12 @@ def validated(model: type[ModelType], document: Document, origin: str) -> ModelT
         raise ConfigError(first_problem(error, origin, document)) from error
 
 
-def load_scenario(name: str = "docking", changes: Mapping[str, Any] | None = None, trust: bool = False) -> Scenario:
+def load_scenario(
+    name: str = "docking",
+    changes: Mapping[str, Any] | None = None,
+    trust: bool = False,
+    own_parts: Mapping[str, AbstractPart] | None = None,
+) -> Scenario:
     """Return a scenario.
 
     Parameters
@@ -177,7 +200,10 @@ def load_scenario(name: str = "docking", changes: Mapping[str, Any] | None = Non
         Items of a list go by name or number, all of them by a star: ``cables.nose.length``, ``gusts.0.start``,
         ``vehicle.thrusters.*.lag``.
     trust : bool
-        Let laws of one's own that the file names be run (`control.laws`).
+        Let code of one's own that the file names be run (`control.laws`, `vehicle.parts`, `cables.*.line`).
+
+    own_parts : mapping of str to AbstractPart, optional
+        Parts of one's own for its ship, as in `Scenario.with_parts`.
 
     Raises
     ------
@@ -196,12 +222,24 @@ def load_scenario(name: str = "docking", changes: Mapping[str, Any] | None = Non
     >>> scenario.config.wind.speed
     9.0
     """
+    document, origin = _changed_document(name, changes or {})
+    if trust:
+        find_beside(origin)
+    scenario = from_document(document, origin, trusted=trust)
+    doubt = scenario.config.vehicle.drag_warning()
+    if doubt:
+        warnings.warn(doubt, TethershipWarning, stacklevel=2)
+    return scenario.with_parts(own_parts) if own_parts else scenario
+
+
+def _changed_document(name: str, changes: Mapping[str, Any]) -> tuple[Document, str]:
+    """Return the document of a scenario, vehicle included, changes made, and where it came from."""
     document, origin = _read("scenarios", name)
-    if isinstance((changes or {}).get("vehicle"), str):
-        document["vehicle"] = (changes or {})["vehicle"]
-        changes = {key: value for key, value in (changes or {}).items() if key != "vehicle"}
+    if isinstance(changes.get("vehicle"), str):
+        document["vehicle"] = changes["vehicle"]
+        changes = {key: value for key, value in changes.items() if key != "vehicle"}
     base = Path(origin).parent if origin.endswith(".toml") else None
-    changes = take_wind_file(document, dict(changes or {}))
+    changes = take_wind_file(document, dict(changes))
     expand_wind_file(document, base, origin)
     vehicle = document.get("vehicle")
     if isinstance(vehicle, str):
@@ -212,13 +250,7 @@ def load_scenario(name: str = "docking", changes: Mapping[str, Any] | None = Non
         raise ConfigError(f"{origin}: changes is {shown(own_changes)}; give a table, [changes], of dotted names")
     for key, value in {**own_changes, **changes}.items():
         change(document, key, value, origin)
-    scenario = from_document(document, origin, trusted=trust)
-    if trust:
-        find_beside(origin)
-    doubt = scenario.config.vehicle.drag_warning()
-    if doubt:
-        warnings.warn(doubt, TethershipWarning, stacklevel=2)
-    return scenario
+    return document, origin
 
 
 def from_document(
@@ -229,6 +261,7 @@ def from_document(
     for key, value in (changes or {}).items():
         change(document, key, value, origin)
     config = validated(ScenarioConfig, document, origin)
+    _check_trust(origin, config.own_plant_code(), trusted)
     return Scenario(origin, config, document, assemble(config), trusted)
 
 
@@ -242,11 +275,6 @@ def read_solver(name: str = "adaptive") -> SolverConfig:
     """
     document, origin = _read("solvers", name)
     return validated(SolverConfig, document, origin)
-
-
-def document_text(document: Document) -> str:
-    """Return a document as JSON, for the attributes of a result."""
-    return json.dumps(document, sort_keys=True)
 
 
 def describe_packaged() -> dict[str, dict[str, str]]:
@@ -273,5 +301,7 @@ def check_file(name: str) -> str:
     if "method" in document or "step" in document:
         validated(SolverConfig, document, origin)
         return "solver"
-    load_scenario(name)
+    document, origin = _changed_document(name, {})
+    if not validated(ScenarioConfig, document, origin).own_plant_code():
+        load_scenario(name)  # what the plant is built of is checked too; code of one's own is not run
     return "scenario"

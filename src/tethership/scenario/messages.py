@@ -66,7 +66,8 @@ def _said(problem: Any) -> str:
         context = problem["ctx"]
         allowed = context.get("expected_tags", "the known kinds")
         near = suggestion(str(context.get("tag", "")), re.findall(r"'([^']*)'", allowed)).rstrip(".")
-        return f"give {context['discriminator']} as one of {allowed}{near}"
+        key = "'model'" if context["discriminator"].endswith("()") else context["discriminator"]
+        return f"give {key} as one of {allowed}{near}"
     if kind == "value_error":
         return str(problem["ctx"]["error"])
     return f"it is {shown(problem['input'])}; {problem['msg'][0].lower()}{problem['msg'][1:]}"

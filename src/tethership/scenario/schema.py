@@ -2,11 +2,12 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from tethership.results.limits import LIMITS
 from tethership.scenario.control_schema import ControlConfig
 from tethership.scenario.names import Word, check_apart
+from tethership.scenario.own_schema import OwnLine, foreign
 from tethership.scenario.quantity import Angle, Metres, Quantity, Seconds, Speed, Table, Vector
 from tethership.scenario.vehicle_schema import VehicleConfig
 from tethership.scenario.wind_schema import GustConfig, TurbulenceConfig, WindConfig
@@ -96,7 +97,18 @@ class PublishedLine(Table):
     model: Literal["published"]
 
 
-LineConfig = Annotated[CatenaryLine | PublishedLine, Field(discriminator="model")]
+def _line_kind(datum: Any) -> str:
+    """Return which table a line is: by its model, one of one's own by the colon in it."""
+    model = datum.get("model") if isinstance(datum, dict) else getattr(datum, "model", "")
+    return "module:Class" if isinstance(model, str) and ":" in model else str(model)
+
+
+LineConfig = Annotated[
+    Annotated[CatenaryLine, Tag("catenary")]
+    | Annotated[PublishedLine, Tag("published")]
+    | Annotated[OwnLine, Tag("module:Class")],
+    Discriminator(_line_kind),
+]
 
 LINES = {"consistent": "catenary", "published": "published"}
 """Line of each formulation, where a cable does not say its own."""
@@ -211,7 +223,7 @@ class ScenarioConfig(Table):
         if self.trim.position is None and (not self.cables or self.trim.elongation is None):
             raise ValueError("trim needs a position, or a cable and an elongation")
         parts = (*self.vehicle.fins, *self.vehicle.thrusters, *self.cables)
-        check_apart((part.name for part in parts), "cables, fins or thrusters")
+        check_apart((part.name for part in (*parts, *self.vehicle.parts)), "cables, fins, thrusters or parts")
         weakest = min((cable.breaking_force for cable in self.cables), default=None)
         given = self.limits.cable_break
         if weakest is None and given is None:
@@ -259,6 +271,15 @@ class ScenarioConfig(Table):
     def line_models(self) -> dict[str, dict[str, str]]:
         """Return the model of each cable's line, by the cable's name."""
         return {cable.name: {"model": cable.line_model(self.formulation)} for cable in self.cables}
+
+    def own_plant_code(self) -> list[str]:
+        """Return the `module:Class` of all parts and lines that are not this package's own."""
+        lines = [cable.line for cable in self.cables if isinstance(cable.line, OwnLine)]
+        return foreign((*self.vehicle.parts, *lines))
+
+    def own_code(self) -> list[str]:
+        """Return the `module:Class` of all laws, parts and lines that are not this package's own."""
+        return [*foreign(self.control.laws), *self.own_plant_code()]
 
     def has_ground(self) -> bool:
         """Return whether it is known where the ground is: at the height given, or below the lowest anchor."""

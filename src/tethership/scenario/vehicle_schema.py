@@ -9,6 +9,7 @@ from pydantic import Field, field_validator, model_validator
 from tethership.physics.fins import USUAL_DEFLECTION
 from tethership.physics.hull import gertler_from_shape
 from tethership.scenario.names import Part, check_apart
+from tethership.scenario.own_schema import OwnPartConfig
 from tethership.scenario.quantity import Matrix, Quantity, Table, Vector
 
 Length = Annotated[float, Quantity("m", positive=True, sourced=True)]
@@ -212,7 +213,7 @@ def _profile(hull: GertlerHull | GertlerShapeHull | EllipsoidHull) -> np.ndarray
 
 
 class VehicleConfig(Table):
-    """An airship."""
+    """An airship; `parts` are parts of one's own, in its own axes."""
 
     name: str
     description: str
@@ -223,6 +224,7 @@ class VehicleConfig(Table):
     envelope: EnvelopeConfig
     fins: tuple[FinConfig, ...] = ()
     thrusters: tuple[ThrusterConfig, ...] = ()
+    parts: tuple[OwnPartConfig, ...] = ()
 
     @property
     def fineness(self) -> float:
@@ -268,5 +270,5 @@ class VehicleConfig(Table):
                 f"envelope.drag_coefficient is for a hull that is nearly a sphere, and this one is {self.fineness:.3g} "
                 f"times as long as wide (below {SLENDER}); give axial_drag_coefficient and cross_flow_drag_coefficient"
             )
-        check_apart((part.name for part in (*self.fins, *self.thrusters)), "fins or thrusters")
+        check_apart((part.name for part in (*self.fins, *self.thrusters, *self.parts)), "fins, thrusters or parts")
         return self

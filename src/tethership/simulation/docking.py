@@ -11,7 +11,7 @@ from tethership.control import AbstractLaw
 from tethership.errors import ConfigError, TethershipWarning
 from tethership.scenario import Scenario, SolverConfig
 from tethership.scenario.load import from_document
-from tethership.scenario.own_laws import find_beside
+from tethership.scenario.own_code import find_beside
 from tethership.simulation.events import Stop
 from tethership.simulation.flight import Flight
 from tethership.simulation.fly import fly
@@ -89,9 +89,9 @@ def fly_again(path: str | Path, progress: Progress | None = None, trust: bool = 
         The file is no flight, of another version, or its input is not readable.
     """
     stored = Flight.load(path).attributes
-    scenario = from_document(stored["scenario"], stored["scenario_name"], trusted=trust)
     if trust:
         find_beside(stored["scenario_name"])
+    scenario = from_document(stored["scenario"], stored["scenario_name"], trusted=trust)
     if stored["own_laws"]:
         raise ConfigError(
             f"{path} was flown with a law of one's own, which no file holds: {', '.join(stored['own_laws'])}"

@@ -13,7 +13,8 @@ from tethership.control import AbstractLaw
 from tethership.control.layers import LayeredLaw
 from tethership.errors import ConfigError, SolveError
 from tethership.plant import TetheredAirship
-from tethership.plant.plant import load_names
+from tethership.plant.layout import parts as part_layout
+from tethership.plant.plant import load_names, reading_names
 from tethership.results import store
 from tethership.scenario import Scenario, SolverConfig, read_solver
 from tethership.scenario.build_loop import build_loop
@@ -141,6 +142,8 @@ def _labels(plant: TetheredAirship) -> dict[str, list[str]]:
         "fin": list(names.fins),
         "cable": list(names.cables),
         "load": list(load_names(plant)),
+        "part_state": list(part_layout(plant).names),
+        "reading": list(reading_names(plant)),
     }
 
 

@@ -6,9 +6,9 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from tethership.control.heading import misalignment
+from tethership.plant.cable import Cable, CableState, end_tension
 from tethership.plant.instant import Instant
 from tethership.plant.loop import ClosedLoop
-from tethership.plant.plant import Cable, CableState, end_tension
 from tethership.spatial import rotation_matrix, safe_norm
 
 CURVE_POINTS = 17
@@ -18,7 +18,7 @@ CURVE_POINTS = 17
 def record(loop: ClosedLoop, time: Float[Array, ""], vector: Float[Array, "n"]) -> dict[str, Array]:
     """Return all outputs at time t [s] for an integrator's vector; units and axes in `results.schema`."""
     now = loop.instant(time, vector)
-    return {**_ship(loop, time, now), **_loads(now), **_cables(loop, now)}
+    return {**_ship(loop, time, now), **_own(now), **_loads(now), **_cables(loop, now)}
 
 
 def _ship(loop: ClosedLoop, time: Float[Array, ""], now: Instant) -> dict[str, Array]:
@@ -38,10 +38,21 @@ def _ship(loop: ClosedLoop, time: Float[Array, ""], now: Instant) -> dict[str, A
         "density": air.density,
         "rate_of_climb": -rotation[2] @ velocity_b,
         "throttle": now.command.throttle,
+        "throttle_asked": now.asked.throttle,
         "saturated": now.saturated.astype(float),
         "deflection": now.command.deflection,
+        "deflection_asked": now.asked.deflection,
         "deflection_saturated": now.fins_saturated.astype(float),
         "clearance": plant.environment.ground - plant.ship.lowest_point(state),
+    }
+
+
+def _own(now: Instant) -> dict[str, Array]:
+    """Return states and readings of parts of one's own, in their units."""
+    told = list(now.measurement.readings.values())
+    return {
+        "part_states": jnp.concatenate([jnp.zeros(0), *now.now.parts]),
+        "readings": jnp.stack(told) if told else jnp.zeros(0),
     }
 
 

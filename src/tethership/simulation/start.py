@@ -13,9 +13,13 @@ from jaxtyping import Array, Float
 from tethership.errors import ConfigError
 from tethership.plant import ClosedLoop, Command, State, TetheredAirship
 from tethership.plant.balance import DRIFT_LIMIT, drift, left_over, residual, residual_limit
+from tethership.plant.layout import parts as part_layout
 from tethership.scenario import Scenario, ScenarioConfig
 from tethership.simulation.events import StopConditions
 from tethership.spatial import rotation_matrix
+
+STILL = 1e-6
+"""Largest rate of a part's state at rest [its unit per second]."""
 
 
 class Start(Protocol):
@@ -76,6 +80,27 @@ def _balance(
     return residual(plant.at_mean(), state, command), drift(plant, state, turning)
 
 
+@eqx.filter_jit
+def _part_rates(plant: TetheredAirship, state: State) -> Array:
+    """Return how fast the states of parts of one's own change where they say they rest [their unit per second]."""
+    now, mean = jnp.zeros(()), plant.at_mean()
+    cables = mean.cable_states(now, state, mean.initial_lengths())
+    return jnp.concatenate(mean.part_rates(now, state, cables, mean.parts_at_rest(now, state, cables)))
+
+
+def check_parts(scenario: Scenario, point: Start) -> None:
+    """Raise ConfigError where a part of one's own does not rest where it says so."""
+    if not scenario.system.parts:
+        return
+    rates = np.asarray(_part_rates(scenario.system, point.state))
+    for name, rate in zip(part_layout(scenario.system).names, rates, strict=True):
+        if not abs(rate) <= STILL:
+            raise ConfigError(
+                f"the part's state {name} changes at {rate:.3g} a second where rest() puts it; "
+                "let rest() be where rate() is zero"
+            )
+
+
 def check_point(scenario: Scenario, point: Start) -> None:
     """Raise ConfigError where a point is no equilibrium of the scenario: trimmed for another one, say.
 
@@ -83,6 +108,7 @@ def check_point(scenario: Scenario, point: Start) -> None:
     -----
     Ten times what a trim may leave: a stored or continued point may differ from one found anew by its rounding.
     """
+    check_parts(scenario, point)
     turning = scenario.config.turning()
     given = None if turning is None else jnp.asarray(turning)
     left, moving = (np.asarray(part) for part in _balance(scenario.system, point.state, point.command, given))

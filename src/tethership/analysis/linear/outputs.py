@@ -16,6 +16,7 @@ from jaxtyping import Array, Float
 from tethership.analysis.linear.right_side import unpack_inputs
 from tethership.plant import TetheredAirship
 from tethership.plant.layout import split_open
+from tethership.plant.plant import reading_names
 from tethership.spatial import rotation_matrix, safe_norm
 
 OF_SHIP = ("airspeed", "angle_of_attack", "sideslip", "rate_of_climb", "clearance")
@@ -23,6 +24,9 @@ OF_SHIP = ("airspeed", "angle_of_attack", "sideslip", "rate_of_climb", "clearanc
 
 OF_SHIP_UNITS = ("m/s", "rad", "rad", "m/s", "m")
 """Their SI units."""
+
+OWN_UNIT = "own"
+"""Unit of what a part of one's own reads: its own."""
 
 STILL = 1e-2
 """Airspeed [m/s] below which it has no direction: airspeed and the two angles have no derivative at rest."""
@@ -51,15 +55,16 @@ class Outputs(NamedTuple):
 def measure(
     plant: TetheredAirship, state: Float[Array, "n"], inputs: Float[Array, "inputs"]
 ) -> Float[Array, "outputs"]:
-    """Return tensions [N], then `OF_SHIP` [SI], at t = 0; arguments as in `right_side`."""
+    """Return tensions [N], `OF_SHIP` [SI], readings of parts, at t = 0; arguments as in `right_side`."""
     changed, _, lengths = unpack_inputs(plant, inputs)
-    now, (pose, _) = jnp.zeros(()), split_open(plant, state)
+    now, (pose, _, own) = jnp.zeros(()), split_open(plant, state)
     rotation = rotation_matrix(pose.attitude)
     centre = changed.ship.buoyancy.centre
     velocity = pose.velocity + jnp.cross(pose.rates, centre)
     air = changed.environment.air(pose.position + rotation @ centre, rotation @ velocity, rotation[:, 0], now)
     u, v, w = through_air = velocity - rotation.T @ air.wind
-    tensions = [safe_norm(cable.ship) for cable in changed.cable_states(now, pose, lengths)]
+    cables = changed.cable_states(now, pose, lengths)
+    tensions = [safe_norm(cable.ship) for cable in cables]
     return jnp.stack(
         [
             *tensions,
@@ -68,6 +73,7 @@ def measure(
             jnp.arctan2(v, safe_norm(jnp.stack([u, w]))),
             -rotation[2] @ velocity,
             changed.environment.ground - changed.ship.lowest_point(pose),
+            *changed.readings(now, pose, cables, own).values(),
         ]
     )
 
@@ -102,8 +108,9 @@ def linear_outputs(
         Names of the cables.
     """
     values, slopes = map(np.asarray, _slopes(plant, state, inputs))
-    names = np.array([*(f"tension_{name}" for name in cables), *OF_SHIP])
-    units = np.array(["N"] * len(cables) + list(OF_SHIP_UNITS))
+    told = reading_names(plant)
+    names = np.array([*(f"tension_{name}" for name in cables), *OF_SHIP, *told])
+    units = np.array(["N"] * len(cables) + list(OF_SHIP_UNITS) + [OWN_UNIT] * len(told))
     kept = np.isfinite(slopes).all(axis=1) & np.isfinite(values)
     if values[len(cables)] < STILL:
         kept &= ~np.isin(names, OF_SHIP[:3])

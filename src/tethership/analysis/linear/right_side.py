@@ -44,15 +44,19 @@ def right_side(plant: TetheredAirship, state: Float[Array, "n"], inputs: Float[A
     ----------
     plant : TetheredAirship
     state : Float[Array, "n"]
-        In the order of `plant.layout.open_loop`: ship, then actuators that lag.
+        In the order of `plant.layout.open_loop`: ship, actuators that lag, parts of one's own.
     inputs : Float[Array, "inputs"]
         As `input_vector` returns them; channels that lag are asked so much, the others do it.
     """
     changed, asked, lengths = unpack_inputs(plant, inputs)
-    pose, own = split_open(plant, state)
-    rate = changed.derivative(jnp.zeros(()), pose, changed.actuated(own, asked), lengths).as_vector()
-    moving = changed.actuator_rates(own, asked)
-    return jnp.concatenate([rate, *(part for part in moving if part.shape[0])]) if len(state) > len(rate) else rate
+    now, own = jnp.zeros(()), split_open(plant, state)
+    command = changed.actuated(own.actuators, asked)
+    rate = changed.derivative(now, own.ship, command, lengths, own.parts).as_vector()
+    if len(state) == len(rate):
+        return rate
+    cables = changed.cable_states(now, own.ship, lengths)
+    moving = (*changed.actuator_rates(own.actuators, asked), *changed.part_rates(now, own.ship, cables, own.parts))
+    return jnp.concatenate([rate, *(part for part in moving if part.shape[0])])
 
 
 def loads(
@@ -60,7 +64,8 @@ def loads(
 ) -> dict[str, Float[Array, "6"]]:
     """Return every load by name (f, m) about P, body axes [N, N m]; arguments as in `right_side`."""
     changed, asked, lengths = unpack_inputs(plant, inputs)
-    now, (pose, own) = jnp.zeros(()), split_open(plant, state)
-    cables = changed.cable_states(now, pose, lengths)
-    found: dict[str, Wrench] = changed.wrenches(now, pose, changed.actuated(own, asked), cables)
+    now, own = jnp.zeros(()), split_open(plant, state)
+    cables = changed.cable_states(now, own.ship, lengths)
+    command = changed.actuated(own.actuators, asked)
+    found: dict[str, Wrench] = changed.wrenches(now, own.ship, command, cables, own.parts)
     return {name: load.as_vector() for name, load in found.items()}

@@ -17,7 +17,7 @@ from jaxtyping import Array, Float
 from tethership.analysis.trim.unknowns import Unknowns
 from tethership.plant import Command, State, TetheredAirship
 from tethership.plant.balance import RESIDUAL_LIMIT, drift, residual
-from tethership.plant.plant import end_tension
+from tethership.plant.cable import end_tension
 from tethership.spatial import STANDARD_GRAVITY, body_rates, rotation_matrix, safe_norm
 
 EFFORT = 1e-3

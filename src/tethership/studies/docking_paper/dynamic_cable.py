@@ -20,7 +20,7 @@ import xarray as xr
 from scipy.interpolate import CubicHermiteSpline
 
 from tethership.errors import ConfigError, SolveError
-from tethership.plant.plant import Cable
+from tethership.plant import Cable
 from tethership.scenario.load import from_document
 from tethership.simulation.flight import Flight
 from tethership.spatial import rotation_matrix

@@ -1,0 +1,140 @@
+"""Code of one's own that a scenario names, imported and made: laws, parts, lines. Depends on: control, plant, physics.
+
+A file that names code runs it only when told so: a scenario from elsewhere must not.
+"""
+
+import dataclasses
+import importlib
+import sys
+from pathlib import Path
+from typing import Any, TypeVar
+
+import jax.numpy as jnp
+import numpy as np
+
+from tethership.control import AbstractLaw
+from tethership.errors import ConfigError, suggestion
+from tethership.physics.cable import AbstractTensionLaw
+from tethership.plant.part import AbstractPart, says
+from tethership.scenario.own_schema import OwnCode, OwnLawConfig, OwnLine, OwnPartConfig
+from tethership.scenario.schema import CableConfig
+
+Own = TypeVar("Own")
+
+
+def make_law(config: OwnLawConfig) -> AbstractLaw:
+    """Return a law of one's own with its numbers; raises ConfigError as `_made`."""
+    return _made(config, f"law {config.name!r}", AbstractLaw, "tethership.AbstractLaw")
+
+
+def make_part(config: OwnPartConfig) -> AbstractPart:
+    """Return a part of one's own with its numbers.
+
+    Raises
+    ------
+    ConfigError
+        As for `_made`, or its states are no names with units, or it has states and does not say how they change.
+    """
+    what = f"part {config.name!r}"
+    part = _made(config, what, AbstractPart, "tethership.AbstractPart")
+    check_part(part, what, config.model)
+    return part
+
+
+def make_line(config: OwnLine, cable: CableConfig) -> AbstractTensionLaw:
+    """Return a line of one's own with its numbers and those of its cable; raises ConfigError as `_made`."""
+    what = f"line of {cable.name!r}"
+    kind = _kind(config, what, AbstractTensionLaw, "tethership.physics.cable.AbstractTensionLaw")
+    known = ("stiffness", "joint_start", "joint_end", "diameter", "linear_density")
+    wanted = {field.name for field in dataclasses.fields(kind)}
+    return _with_numbers(kind, {**{k: getattr(cable, k) for k in known if k in wanted}, **config.numbers}, config, what)
+
+
+def check_part(part: AbstractPart, what: str, model: str) -> None:
+    """Raise ConfigError where a part's states are not named, or nothing is said of how they rest and change."""
+    states = part.states()
+    named = isinstance(states, tuple | list) and all(
+        isinstance(pair, tuple | list) and len(pair) == 2 and all(isinstance(word, str) for word in pair)
+        for pair in states
+    )
+    if not named:
+        raise ConfigError(f"{what}: {model}.states() gives {states!r}; give names with SI units, e.g. (('fill', '1'),)")
+    if len({name for name, _ in states}) < len(states):
+        raise ConfigError(f"{what}: {model}.states() names a state twice; give each its own name")
+    lacking = [method for method in ("rest", "rate") if states and not says(part, method)]
+    if lacking:
+        raise ConfigError(f"{what}: {model} has states and no {' and no '.join(lacking)}; say how they rest and change")
+
+
+def as_entry(name: str, part: AbstractPart) -> dict[str, Any]:
+    """Return a part that is given in Python as a file would name it: its class, and its fields as numbers.
+
+    Raises
+    ------
+    ConfigError
+        It is no part, its class stands inside a function, or a field is no number or list of numbers.
+    """
+    kind = type(part)
+    if not isinstance(part, AbstractPart):
+        raise ConfigError(f"part {name!r}: {kind.__name__} is no part; make it a subclass of tethership.AbstractPart")
+    if "." in kind.__qualname__:
+        raise ConfigError(
+            f"part {name!r}: {kind.__qualname__} stands inside something else; define it at the top of its module"
+        )
+    numbers = {}
+    for field in dataclasses.fields(part):
+        value = getattr(part, field.name)
+        try:
+            array = np.asarray(value, dtype=float)
+        except (TypeError, ValueError):
+            array = np.zeros((0, 0))
+        if array.ndim > 1 or array.dtype.kind != "f" or not np.isfinite(array).all() or isinstance(value, str | bool):
+            raise ConfigError(
+                f"part {name!r}: its field {field.name!r} is no finite number or list of numbers; give one"
+            )
+        numbers[field.name] = array.tolist()
+    return {"name": name, "model": f"{kind.__module__}:{kind.__qualname__}", "numbers": numbers}
+
+
+def _made(config: OwnCode, what: str, base: type[Own], base_name: str) -> Own:
+    """Return code of one's own with its numbers.
+
+    Raises
+    ------
+    ConfigError
+        Its class cannot be imported, is of another kind, or does not take these numbers.
+    """
+    return _with_numbers(_kind(config, what, base, base_name), config.numbers, config, what)
+
+
+def _with_numbers(kind: Any, numbers: dict[str, Any], config: OwnCode, what: str) -> Any:
+    """Return an object of a class with its numbers as arrays."""
+    try:
+        return kind(**{name: jnp.asarray(value) for name, value in numbers.items()})
+    except TypeError as error:
+        raise ConfigError(f"{what}: {config.model} does not take these numbers: {error}") from error
+
+
+def _kind(config: OwnCode, what: str, base: type, base_name: str) -> Any:
+    """Return the class that an entry names."""
+    module, _, name = config.model.partition(":")
+    try:
+        found = importlib.import_module(module)
+    except Exception as error:
+        raise ConfigError(
+            f"{what}: {module} cannot be imported ({type(error).__name__}: {error}); it must lie beside "
+            "the scenario's file or on Python's path"
+        ) from error
+    kind = getattr(found, name, None)
+    if kind is None:
+        raise ConfigError(f"{what}: {module} has no {name!r}{suggestion(name, dir(found))}")
+    if not (isinstance(kind, type) and issubclass(kind, base)):
+        raise ConfigError(f"{what}: {config.model} is no {what.split()[0]}; make it a subclass of {base_name}")
+    return kind
+
+
+def find_beside(file: str) -> None:
+    """Let modules beside a scenario's file be imported; a packaged scenario has none."""
+    folder = str(Path(file).resolve().parent)
+    if file.endswith(".toml") and folder not in sys.path:
+        sys.path.append(folder)
