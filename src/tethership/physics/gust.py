@@ -14,6 +14,9 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+NEVER = 1e9
+"""A time after every flight [s]."""
+
 
 class AbstractGust(eqx.Module):
     """A velocity added to the wind, the same everywhere."""
@@ -46,6 +49,11 @@ class CosineGust(AbstractGust):
     start: Float[Array, ""]
     period: Float[Array, ""]
     turn: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.zeros(()))
+
+    @classmethod
+    def silent(cls) -> "CosineGust":
+        """Return a gust that adds nothing, and begins after every flight: a switch that is off."""
+        return cls(jnp.zeros(3), jnp.full((), NEVER, dtype=float), jnp.ones(()), jnp.zeros(()))
 
     def velocity(self, time: Float[Array, ""]) -> Float[Array, "3"]:
         """Return the velocity added to the wind [m/s], ground axes, at time t [s]; C¹ in t."""

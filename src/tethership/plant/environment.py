@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 
 from tethership.physics.atmosphere import AbstractAtmosphere
 from tethership.physics.ground_effect import GroundEffect
-from tethership.physics.gust import AbstractGust
+from tethership.physics.gust import AbstractGust, CosineGust
 from tethership.physics.turbulence import AbstractFluctuation
 from tethership.physics.wind import AbstractWind
 
@@ -86,6 +86,10 @@ class Environment(eqx.Module):
     def without_fluctuations(self) -> "Environment":
         """Return the mean air: that in which a ship is trimmed."""
         return dataclasses.replace(self, fluctuations=())
+
+    def with_a_gust(self) -> "Environment":
+        """Return the same air with a gust, a silent one where there is none: one structure with and without."""
+        return self if self.gusts else dataclasses.replace(self, gusts=(CosineGust.silent(),))
 
     def air(
         self,

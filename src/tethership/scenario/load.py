@@ -129,6 +129,9 @@ def _check_trust(name: str, code: list[str], trusted: bool) -> None:
         )
 
 
+MOST_BASES = 8
+"""Scenarios that may stand on one another."""
+
 KINDS = ("scenarios", "vehicles", "solvers", "campaigns")
 """What is packaged, by folder."""
 
@@ -194,7 +197,8 @@ def load_scenario(
     Parameters
     ----------
     name : str
-        A packaged name (see `list_packaged`) or a path that ends in `.toml`.
+        A packaged name (see `list_packaged`) or a path that ends in `.toml`. A file may name another one as its `base`:
+        it then says only what differs, whole tables or single values under `[changes]`.
     changes : mapping, optional
         Dotted name → value, e.g. ``{"wind.speed": 12.0, "vehicle.body.mass": 130.0}``; numbers in SI and radians.
         Items of a list go by name or number, all of them by a star: ``cables.nose.length``, ``gusts.0.start``,
@@ -235,6 +239,7 @@ def load_scenario(
 def _changed_document(name: str, changes: Mapping[str, Any]) -> tuple[Document, str]:
     """Return the document of a scenario, vehicle included, changes made, and where it came from."""
     document, origin = _read("scenarios", name)
+    document, base_changes = _on_base(document, origin)
     if isinstance(changes.get("vehicle"), str):
         document["vehicle"] = changes["vehicle"]
         changes = {key: value for key, value in changes.items() if key != "vehicle"}
@@ -245,12 +250,48 @@ def _changed_document(name: str, changes: Mapping[str, Any]) -> tuple[Document, 
     if isinstance(vehicle, str):
         document["vehicle"], vehicle_origin = _read("vehicles", vehicle, base)
         validated(VehicleConfig, document["vehicle"], vehicle_origin)
+    for key, value in {**base_changes, **changes}.items():
+        change(document, key, value, origin)
+    return document, origin
+
+
+def _on_base(document: Document, origin: str, depth: int = 0) -> tuple[Document, Document]:
+    """Return the document of a scenario with the tables of its `base` that it does not say itself, and their changes.
+
+    Raises
+    ------
+    ConfigError
+        A base is not found, or stands on itself; `changes` is no table.
+    """
     own_changes = document.pop("changes", {})
     if not isinstance(own_changes, dict):
         raise ConfigError(f"{origin}: changes is {shown(own_changes)}; give a table, [changes], of dotted names")
-    for key, value in {**own_changes, **changes}.items():
-        change(document, key, value, origin)
-    return document, origin
+    base = document.pop("base", None)
+    if base is None:
+        return document, own_changes
+    if not isinstance(base, str):
+        raise ConfigError(f"{origin}: base is {shown(base)}; give a packaged scenario, or a path that ends in .toml")
+    if depth >= MOST_BASES:
+        raise ConfigError(
+            f"{origin}: base {shown(base)} is the {depth + 1}th in a row, or stands on itself; use a copy"
+        )
+    folder = Path(origin).parent if origin.endswith(".toml") else None
+    found, where = _read("scenarios", base, folder)
+    below, its_changes = _on_base(found, where, depth + 1)
+    return {**_rooted(below, where), **document}, {**its_changes, **own_changes}
+
+
+def _rooted(document: Document, origin: str) -> Document:
+    """Return a document whose own files, vehicle and measured wind, are found from any folder."""
+    if not origin.endswith(".toml"):
+        return document
+    folder, found = Path(origin).resolve().parent, dict(document)
+    if str(found.get("vehicle", "")).endswith(".toml"):
+        found["vehicle"] = str(folder / found["vehicle"])
+    wind = found.get("wind")
+    if isinstance(wind, dict) and isinstance(wind.get("file"), str):
+        found["wind"] = {**wind, "file": str(folder / wind["file"])}
+    return found
 
 
 def from_document(

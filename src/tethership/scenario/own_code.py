@@ -134,7 +134,7 @@ def _kind(config: OwnCode, what: str, base: type, base_name: str) -> Any:
 
 
 def find_beside(file: str) -> None:
-    """Let modules beside a scenario's file be imported; a packaged scenario has none."""
-    folder = str(Path(file).resolve().parent)
-    if file.endswith(".toml") and folder not in sys.path:
+    """Let modules beside a scenario's file be imported; beside a packaged one those of the working folder."""
+    folder = str(Path(file).resolve().parent if file.endswith(".toml") else Path.cwd())
+    if folder not in sys.path:
         sys.path.append(folder)

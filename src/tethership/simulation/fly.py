@@ -85,6 +85,7 @@ def fly(
     ends = Stop.of(scenario, stop)
     check_point(scenario, point)
     plant = scenario.system if rewind else scenario.system.with_winches_held()
+    plant = dataclasses.replace(plant, environment=plant.environment.with_a_gust())
     loop = build_loop(scenario.config, plant, point.command, acting)
     conditions = ends.conditions()
     vector, margins = begin(loop, conditions, start_state(scenario, point.state))
