@@ -87,7 +87,7 @@ def interval(row: Mapping[str, Any]) -> str | None:
 
 
 def trusted(row: Mapping[str, Any]) -> str:
-    """Return what is to be said of a verdict on tension, nothing of another."""
+    """Return what is to be said of a verdict on tension, from its shares and probabilities [-], nothing of another."""
     if "quasi_static_outside" not in row:
         return ""
     return (
