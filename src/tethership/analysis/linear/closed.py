@@ -141,8 +141,8 @@ def closed_model(
     -------
     LinearModel
         With a sampled law the discrete model over its period T [s], which is `LinearModel.sample_time`; its
-        attribute `warnings` names channels at their ends, and a state that changes by more than `MOVING` a second in
-        its SI unit.
+        attribute `warnings` names channels at their ends or in their dead band, and a state that changes by more than
+        `MOVING` a second in its SI unit.
     """
     plant: TetheredAirship = scenario.system.at_mean()
     loop = build_loop(scenario.config, plant.with_winches_held(), command, scenario.law() if law is None else law)

@@ -76,7 +76,7 @@ class Problem(eqx.Module):
         return state, Command(everything[12 : 12 + count], everything[12 + count :])
 
     def balance(self, values: Float[Array, "unknowns"]) -> Float[Array, "balances"]:
-        """Return the residual for values of the unknowns, in units of 1e-3 of the weight [-].
+        """Return the residual for values of the unknowns, in units of 1e-3 of the weight [-]; moments times 1 m.
 
         Where motion is looked for, the rates of what must stand still follow, in units of 1e-3 rad/s and m/s.
         """
