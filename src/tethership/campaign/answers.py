@@ -43,7 +43,11 @@ PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
 
 
 def failed(data: xr.Dataset) -> np.ndarray:
-    """Return which flights have no result, shape (laws, cases)."""
+    """Return which flights have no result, shape (laws, cases).
+
+    Those that diverged, and those whose trim left `UNBALANCED` or more: a millionth of the weight [N, N m], 1e-6
+    [rad/s, m/s] of what must stand still.
+    """
     diverged = data["outcome"].values == CODES.index(Outcome.diverged)
     return diverged | ~(data["unbalanced"].values < UNBALANCED)
 
@@ -64,7 +68,7 @@ def undetermined(data: xr.Dataset, flags: Flags) -> Flags:
 
 
 def limit_values(plan: Plan) -> dict[str, tuple[float, str]]:
-    """Return the number and unit of each limit; angles in degrees."""
+    """Return the number and unit of each limit: tensions [N], attitude [deg], clearance [m], time [s]."""
     control, tear, tensile, weakest = map(float, plan.scenario.config.watched_tensions())
     limits = plan.config.limits
     found = {
@@ -84,7 +88,12 @@ def limit_values(plan: Plan) -> dict[str, tuple[float, str]]:
 
 
 def exceeded(plan: Plan, data: xr.Dataset) -> Flags:
-    """Return for each limit that has a number which flights exceed it, shape (laws, cases)."""
+    """Return for each limit that has a number which flights exceed it, shape (laws, cases).
+
+    Peaks of tension are held against limits [N], the larger of |φ| and |θ| against an angle ([rad] in the campaign,
+    [deg] in the results), the hull's least clearance against 0 [m], the time to dock [s] against that allowed. A flight
+    without a result exceeds all.
+    """
     peak, outcome, broken = data["tension_max"].values, data["outcome"].values, failed(data)
     control, tear, tensile, weakest = plan.scenario.config.watched_tensions()
     limits = plan.config.limits
@@ -115,7 +124,13 @@ def answer(plan: Plan, data: xr.Dataset, confidence: float = 0.95) -> dict[str, 
     data : xr.Dataset
         From `open_results`, complete.
     confidence : float
-        Of all intervals.
+        Of all intervals [-].
+
+    Returns
+    -------
+    dict
+        Of each law probabilities [-] with their intervals, percentiles of the time to dock [s] and of the peak tension
+        [N], its tail [N] and what it hangs on [-]; pairs of laws; compliance; `step_error` [-].
     """
     flags, snapped = exceeded(plan, data), exceeded(plan, with_snap(data))
     names = [law.name for law in plan.laws]
@@ -185,7 +200,20 @@ def _tail(plan: Plan, peaks: np.ndarray, broken: np.ndarray, confidence: float) 
 
 
 def tail_data(tail: Tail, confidence: float) -> dict[str, Any]:
-    """Return a tail as plain data, with its return levels."""
+    """Return a tail as plain data, with its return levels.
+
+    Parameters
+    ----------
+    tail : Tail
+        Of the peak tensions of one law.
+    confidence : float
+        Of the levels' intervals [-].
+
+    Returns
+    -------
+    dict
+        u, σ, the end and the levels with their intervals [N]; ζ_u, ξ, distance and the levels' probabilities [-].
+    """
     levels = [
         dict(zip(("level", "low", "high"), tail.level(p, confidence), strict=True)) | {"probability": p} for p in LEVELS
     ]
@@ -249,7 +277,7 @@ def _complied(
 
 
 def step_error(data: xr.Dataset) -> dict[str, Any]:
-    """Return what the fixed steps cost: |fixed/tight − 1| of the flights flown again, median and largest by metric."""
+    """Return what the fixed steps cost: |fixed/tight − 1| [-] of flights flown again, median and largest by metric."""
     found: dict[str, Any] = {"flights": 0}
     for name in COMPARED:
         errors = data[f"error_{name}"].values if f"error_{name}" in data else np.array([])

@@ -27,7 +27,7 @@ def least_flights(allowed: float, confidence: float) -> int:
     allowed : float
         Probability [-].
     confidence : float
-        Of the two-sided interval.
+        Of the two-sided interval [-].
 
     Examples
     --------
@@ -56,7 +56,12 @@ def judge(
     sampling : str
         As in `CampaignConfig`.
     replicate : ndarray
-        Scramble of each case.
+        Scramble of each case, shape (cases,).
+
+    Returns
+    -------
+    dict
+        `allowed`, `probability`, `low`, `high` and `confidence` [-], numbers of flights, `verdict` and `reason`.
 
     Notes
     -----

@@ -49,7 +49,15 @@ class _Spread(Table, abc.ABC):
 
 
 class Uniform(_Spread):
-    """Evenly between `low` and `high`; on a grid `number` levels, ends included."""
+    """Evenly between `low` and `high`; on a grid `number` levels, ends included.
+
+    Attributes
+    ----------
+    low, high : float
+        Ends, in `unit` or relative to the scenario's own value [-].
+    number : int, optional
+        How many levels a grid has.
+    """
 
     distribution: Literal["uniform"]
     low: float
@@ -63,18 +71,24 @@ class Uniform(_Spread):
         return self
 
     def quantile(self, probability: np.ndarray) -> np.ndarray:
-        """Return low + p (high − low)."""
+        """Return low + p (high − low), in the file's unit, at probabilities p [-]."""
         return self.low + probability * (self.high - self.low)
 
     def levels(self) -> np.ndarray:
-        """Return the levels of a grid."""
+        """Return the levels of a grid, in the file's unit or relative [-], shape (number,)."""
         if self.number is None:
             raise ValueError("a grid needs the number of levels: number = 5")
         return np.linspace(self.low, self.high, self.number)
 
 
 class Normal(_Spread):
-    """Normal about `mean`; with `low` or `high` cut off there (truncated)."""
+    """Normal about `mean`; with `low` or `high` cut off there (truncated).
+
+    Attributes
+    ----------
+    mean, deviation, low, high : float
+        In `unit` or relative to the scenario's own value [-].
+    """
 
     distribution: Literal["normal"]
     mean: float
@@ -90,25 +104,41 @@ class Normal(_Spread):
         return self
 
     def quantile(self, probability: np.ndarray) -> np.ndarray:
-        """Return the quantile of the normal distribution, truncated where bounds are given."""
+        """Return the quantile at probabilities [-], in the file's unit, truncated where bounds are given."""
         low, high = (self.low - self.mean) / self.deviation, (self.high - self.mean) / self.deviation
         return scipy.stats.truncnorm.ppf(probability, low, high, self.mean, self.deviation)
 
 
 class Lognormal(_Spread):
-    """The logarithm is normal: `median`, and `deviation` of the logarithm."""
+    """The logarithm is normal: `median`, and `deviation` of the logarithm.
+
+    Attributes
+    ----------
+    median : float
+        In `unit` or relative to the scenario's own value [-].
+    deviation : float
+        Of the natural logarithm [-].
+    """
 
     distribution: Literal["lognormal"]
     median: Annotated[float, Field(gt=0)]
     deviation: Annotated[float, Field(gt=0)]
 
     def quantile(self, probability: np.ndarray) -> np.ndarray:
-        """Return median · exp(deviation · Φ⁻¹(p))."""
+        """Return median · exp(deviation · Φ⁻¹(p)), in the median's unit, at probabilities p [-]."""
         return scipy.stats.lognorm.ppf(probability, self.deviation, scale=self.median)
 
 
 class Weibull(_Spread):
-    """As winds are distributed: `scale` and `shape`, from `low` to `high` where they are given."""
+    """As winds are distributed: `scale` and `shape`, from `low` to `high` where they are given.
+
+    Attributes
+    ----------
+    scale, low, high : float
+        In `unit` or relative to the scenario's own value [-].
+    shape : float
+        k [-].
+    """
 
     distribution: Literal["weibull"]
     scale: Annotated[float, Field(gt=0)]
@@ -126,13 +156,21 @@ class Weibull(_Spread):
         return scipy.stats.weibull_min.cdf([self.low, self.high], self.shape, scale=self.scale)
 
     def quantile(self, probability: np.ndarray) -> np.ndarray:
-        """Return the quantile, truncated where bounds are given."""
+        """Return the quantile at probabilities [-], in the scale's unit, truncated where bounds are given."""
         below, above = self._cumulative()
         return scipy.stats.weibull_min.ppf(below + probability * (above - below), self.shape, scale=self.scale)
 
 
 class Discrete(_Spread):
-    """One of `values`, with `weights` where they are not equally likely."""
+    """One of `values`, with `weights` where they are not equally likely.
+
+    Attributes
+    ----------
+    values : tuple of float
+        In `unit` or relative to the scenario's own value [-].
+    weights : tuple of float, optional
+        Of each value [-]; they need not add up to 1.
+    """
 
     distribution: Literal["discrete"]
     values: Annotated[tuple[float, ...], Field(min_length=1)]
@@ -145,7 +183,7 @@ class Discrete(_Spread):
         return self
 
     def quantile(self, probability: np.ndarray) -> np.ndarray:
-        """Return the value whose share of the weights a probability falls into."""
+        """Return the value whose share of the weights a probability [-] falls into, in the file's unit."""
         weights = np.ones(len(self.values)) if self.weights is None else np.array(self.weights)
         edges = np.cumsum(weights) / np.sum(weights)
         return np.array(self.values)[np.minimum(np.searchsorted(edges, probability, side="right"), len(edges) - 1)]
@@ -156,7 +194,13 @@ class Discrete(_Spread):
 
 
 class Whole(_Spread):
-    """A whole number from `low` to `high`, both included: the seed of turbulence."""
+    """A whole number from `low` to `high`, both included: the seed of turbulence.
+
+    Attributes
+    ----------
+    low, high : int
+        Ends [-].
+    """
 
     distribution: Literal["whole"]
     low: int = 1
@@ -170,7 +214,7 @@ class Whole(_Spread):
         return self
 
     def quantile(self, probability: np.ndarray) -> np.ndarray:
-        """Return low + ⌊p (high − low + 1)⌋."""
+        """Return low + ⌊p (high − low + 1)⌋ [-] at probabilities p [-]."""
         count = self.high - self.low + 1
         return self.low + np.minimum(np.floor(probability * count), count - 1)
 

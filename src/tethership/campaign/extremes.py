@@ -60,11 +60,14 @@ class Tail(NamedTuple):
 
     @property
     def adequate(self) -> bool:
-        """Whether the known excesses could be of the fitted tail: Kolmogorov's distance below its 5 % limit 1.36/√n."""
+        """Whether the known excesses could be of the tail: Kolmogorov's distance [-] below its 5 % limit 1.36/√n."""
         return self.distance < KOLMOGOROV / np.sqrt(max(self.excesses, 1))
 
     def level(self, probability: float, confidence: float = 0.95) -> tuple[float, float, float]:
-        """Return the level exceeded with a probability [-] per flight, and the ends of its bootstrap interval."""
+        """Return the level exceeded with a probability [-] per flight, and the ends of its bootstrap interval.
+
+        All three in the unit of the values: [N] of peak tensions. `confidence` is of the interval, two-sided [-].
+        """
         best = _level(self.threshold, self.share, self.shape, self.scale, probability)
         drawn = _level(self.threshold, self.shares, self.shapes, self.scales, probability)
         low, high = np.quantile(drawn, [0.5 - 0.5 * confidence, 0.5 + 0.5 * confidence])
@@ -72,7 +75,7 @@ class Tail(NamedTuple):
 
     @property
     def end(self) -> float | None:
-        """Where the tail ends, u − σ/ξ, None if it does not."""
+        """Where the tail ends, u − σ/ξ, in the unit of the values ([N] of tensions); None if it does not."""
         return self.threshold - self.scale / self.shape if self.shape < 0 else None
 
 
@@ -96,13 +99,14 @@ def fit_tail(
     Parameters
     ----------
     values : ndarray
-        One peak of each flight.
+        One peak of each flight, of one unit: tensions [N] in a campaign. Shape (flights,); what is not finite is left
+        out.
     censored : ndarray of bool, optional
         Flights that ended at their peak (the cable broke): it would have been higher, nobody knows by how much.
     seed : int
         Of the bootstrap.
     share : float
-        Of the flights that lie above the threshold and are not censored.
+        Of the flights that lie above the threshold and are not censored [-].
     draws : int
         Bootstrap samples.
 

@@ -54,7 +54,7 @@ class Cases(NamedTuple):
     names : tuple of str
         Dotted names of the parameters.
     values : ndarray
-        Their values [SI], shape (flights, parameters).
+        Their values in SI, e.g. `wind.speed` [m/s] or an angle [rad], shape (flights, parameters).
     """
 
     names: tuple[str, ...]
@@ -62,7 +62,7 @@ class Cases(NamedTuple):
 
     @classmethod
     def of(cls, columns: Mapping[str, np.ndarray | float], count: int) -> "Cases":
-        """Return so many cases with these parameters; a number is the same in all."""
+        """Return so many cases with these parameters, in SI as in `Cases`; a number is the same in all."""
         return cls((), np.zeros((count, 0))).with_columns(columns)
 
     def with_columns(self, columns: Mapping[str, np.ndarray | float]) -> "Cases":
@@ -74,7 +74,20 @@ class Cases(NamedTuple):
 
 
 def layer_switches(scenario: Scenario, layers: Sequence[str]) -> dict[str, float]:
-    """Return the gains that make a scenario's law act with these layers only, the others being zero."""
+    """Return the gains that make a scenario's law act with these layers only, the others being zero.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Its own gains are those of the layers that act.
+    layers : sequence of str
+        Of `SWITCHES`.
+
+    Returns
+    -------
+    dict[str, float]
+        Dotted name → gain: of rewind [m/(s N)], heading [1/rad], navigation's places [1/m] and speeds [s/m].
+    """
     known = list_parameters(scenario.config)
     return {name: known[name].value if layer in layers else 0.0 for layer, names in SWITCHES.items() for name in names}
 
@@ -172,7 +185,13 @@ class Flyer:
         return _prepared(self._config, self._places, self._question, jnp.asarray(values.T), self._start)
 
     def fly(self, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Return the metrics of at most `lanes` cases, values [SI] of shape (cases, names), as `fly_cases` does."""
+        """Return the metrics of at most `lanes` cases, values [SI] of shape (cases, names), as `fly_cases` does.
+
+        Raises
+        ------
+        ConfigError
+            A lag [s] among the values is too short for the step.
+        """
         for name, column in zip(self._names, values.T, strict=True):
             if name.endswith(".lag"):
                 _check_lag(name, float(column.min()), self._longest)
@@ -246,8 +265,8 @@ def fly_cases(
     Returns
     -------
     dict[str, ndarray]
-        As `simulation.batch.metrics_of`, first axis the flight; `unbalanced` is what the trim left, in 1e-3 of the
-        weight.
+        As `simulation.batch.metrics_of`, first axis the flight: tensions [N], times [s], angles [deg], clearance [m]
+        (`campaign.store.UNITS`); `unbalanced` is what the trim left, in 1e-3 of the weight [-].
 
     Raises
     ------
@@ -280,6 +299,11 @@ def fly_blocks(scenario: Scenario, blocks: Sequence[Cases], unbreakable: bool = 
         With the same names in the same order.
     unbreakable : bool
         As in `fly_cases`.
+
+    Returns
+    -------
+    list of dict[str, ndarray]
+        One for each block, as `fly_cases` returns it: tensions [N], times [s], angles [deg], clearance [m].
     """
     cases = Cases(blocks[0].names, np.concatenate([block.values for block in blocks]))
     flown = fly_cases(scenario, cases, unbreakable=unbreakable)

@@ -23,7 +23,7 @@ class Importance(NamedTuple):
     rank_correlation : float
         Spearman's ρ with the output [-].
     p_value : float
-        Probability of a ρ as far from zero were there none.
+        Probability of a ρ as far from zero were there none [-].
     first, first_low, first_high : float or None
         Sobol's first-order index and its 95 % bootstrap interval [-]; None without the design.
     total, total_low, total_high : float or None
@@ -51,7 +51,7 @@ def rank_importance(names: tuple[str, ...], values: np.ndarray, output: np.ndarr
     values : ndarray
         [SI], shape (cases, names).
     output : ndarray
-        One number of each case; what is not finite is left out.
+        One number of each case, any unit (a peak tension [N]), shape (cases,); what is not finite is left out.
     """
     finite = np.isfinite(output)
     found = []
@@ -75,7 +75,8 @@ def sobol_importance(names: tuple[str, ...], values: np.ndarray, output: np.ndar
     values : ndarray
         [SI], shape (n(d + 2), d).
     output : ndarray
-        One number of each point; a point without takes the median, so that the design stays whole.
+        One number of each point, any unit (a peak tension [N]), shape (n(d + 2),); a point without takes the median, so
+        that the design stays whole.
     seed : int
         Of the bootstrap.
     """

@@ -13,13 +13,13 @@ class PairedMetric(NamedTuple):
     ----------
     name : str
     first, second : float
-        Means over the cases both flew.
+        Means over the cases both flew, in the metric's unit (`campaign.store.UNITS`).
     difference, low, high : float
-        Mean of second − first and its 95 % interval (Student, pairs).
+        Mean of second − first and its 95 % interval (Student, pairs), in the metric's unit.
     lower : float
         Share of cases in which the second law's is lower [-].
     p_value : float
-        Wilcoxon's signed-rank test of no difference.
+        Wilcoxon's signed-rank test of no difference [-].
     cases : int
         Cases that both have.
     """
@@ -44,7 +44,7 @@ class PairedLimit(NamedTuple):
     only_first, only_second, both : int
         Cases that exceed it under one law alone, and under both.
     p_value : float
-        Exact McNemar test of equal probability.
+        Exact McNemar test of equal probability [-].
     """
 
     name: str
@@ -55,7 +55,16 @@ class PairedLimit(NamedTuple):
 
 
 def paired_metric(name: str, first: np.ndarray, second: np.ndarray) -> PairedMetric | None:
-    """Return a metric compared case by case, None where fewer than three cases have it under both laws."""
+    """Return a metric compared case by case, None where fewer than three cases have it under both laws.
+
+    Parameters
+    ----------
+    name : str
+        Of the metric, e.g. `tension_max`.
+    first, second : ndarray
+        Its values under each law, of one unit ([N] of a tension, [s] of a time), shape (cases,); what is not finite is
+        left out.
+    """
     both = np.isfinite(first) & np.isfinite(second)
     if np.sum(both) < 3:
         return None

@@ -44,6 +44,12 @@ def perturbed(scenario: Scenario, count: int, seed: int, spread: Spread | None =
     spread : Spread, optional
         How far.
 
+    Returns
+    -------
+    dict[str, ndarray]
+        `start.attitude_offset` of φ, θ, ψ [rad], `gusts.0.start` [s], not below 0, and `wind.speed` [m/s], each of
+        shape (count,).
+
     Raises
     ------
     ConfigError

@@ -38,7 +38,7 @@ class Batch(NamedTuple):
     first : int
         Its first case.
     values : ndarray
-        [SI], shape (cases, names).
+        Of everything that differs, in SI: [m/s], [rad], [N], …; shape (cases, names).
     verified : tuple of int
         Places in the batch of cases that are flown again adaptively.
     """
@@ -62,7 +62,7 @@ class Work(NamedTuple):
     names : tuple of str
         Dotted names of the columns of `Batch.values`.
     example : tuple of float
-        Values of one case.
+        Values of one case [SI].
     lanes : int
         Flights of one call.
     step : float
@@ -98,7 +98,7 @@ class Plan(NamedTuple):
     names : tuple of str
         Columns of a batch: what varies, then gains that differ between laws.
     values : ndarray
-        [SI], shape (laws, cases, names).
+        Of everything that differs, in SI: [m/s], [rad], [N], …; shape (laws, cases, names).
     """
 
     name: str

@@ -20,9 +20,9 @@ class Estimate(NamedTuple):
     probability : float
         Share that exceeds [-].
     low, high : float or None
-        Ends of the interval; None where the sampling gives none.
+        Ends of the interval [-]; None where the sampling gives none.
     confidence : float
-        Of the interval.
+        Of the interval [-].
     method : str
         How the interval comes about.
     """
@@ -42,13 +42,13 @@ def estimate(exceeded: np.ndarray, sampling: str, replicate: np.ndarray, confide
     Parameters
     ----------
     exceeded : ndarray
-        Of each flight, shape (cases,).
+        Whether each flight exceeds it, shape (cases,).
     sampling : str
         As in `CampaignConfig`.
     replicate : ndarray
         Which scramble each case belongs to.
     confidence : float
-        Of the interval, two-sided.
+        Of the interval, two-sided [-].
     """
     count, flights = int(np.sum(exceeded)), len(exceeded)
     share = count / flights
@@ -64,7 +64,7 @@ def estimate(exceeded: np.ndarray, sampling: str, replicate: np.ndarray, confide
 
 
 def clopper_pearson1934(count: int, flights: int, confidence: float = 0.95) -> tuple[float, float]:
-    """Return the exact two-sided interval of a binomial share."""
+    """Return the exact two-sided interval of a binomial share [-], for a confidence [-]."""
     found = scipy.stats.binomtest(count, flights).proportion_ci(confidence, method="exact")
     return float(found.low), float(found.high)
 
@@ -85,10 +85,19 @@ def _from_scrambles(
 def running(exceeded: np.ndarray, confidence: float = 0.95, points: int = 60) -> dict[str, np.ndarray]:
     """Return how a probability and its exact interval settle with the number of independent flights.
 
+    Parameters
+    ----------
+    exceeded : ndarray of bool
+        Whether each flight exceeds the limit, in the order in which they were drawn.
+    confidence : float
+        Of the interval, two-sided [-].
+    points : int
+        How many numbers of flights, at most, evenly spread in their logarithm.
+
     Returns
     -------
     dict
-        `flights`, `probability`, `low`, `high`, each of shape (points,) at most.
+        `flights`; `probability`, `low`, `high` [-]; each of shape (points,) at most.
     """
     flights = np.unique(np.geomspace(min(10, len(exceeded)), len(exceeded), points).astype(int))
     counts = np.cumsum(exceeded)[flights - 1]

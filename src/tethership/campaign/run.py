@@ -24,7 +24,7 @@ class Campaign(NamedTuple):
     plan : Plan
         What was flown.
     data : xr.Dataset
-        Every metric over law and case.
+        Every metric over law and case, with its unit: tensions [N], times [s], angles [deg] (`campaign.store.UNITS`).
     answers : dict
         What the flights say, law by law.
     flown : int
@@ -65,7 +65,7 @@ def run_campaign(
     scheduler : str, optional
         Address of a Dask scheduler.
     confidence : float
-        Of the intervals.
+        Of the intervals [-].
     progress : callable, optional
         Called with the flights that are done and their total.
     trust : bool

@@ -26,7 +26,7 @@ class Sample(NamedTuple):
     names : tuple of str
         Dotted names.
     values : ndarray
-        [SI], shape (cases, names).
+        In SI, e.g. `wind.speed` [m/s], shape (cases, names).
     replicate : ndarray
         Which independent scramble each case belongs to; all 0 where the draws are independent.
     """
@@ -47,6 +47,11 @@ def draw(campaign: CampaignConfig, scenario: Scenario, origin: str) -> Sample:
         What it varies.
     origin : str
         For messages.
+
+    Returns
+    -------
+    Sample
+        Values in SI, whatever unit the file gives them in: [m/s], [rad], [m], …
 
     Raises
     ------
@@ -138,6 +143,11 @@ def saltelli_design(samples: int, size: int, seed: int) -> np.ndarray:
         Quantities d.
     seed : int
         Of the scramble.
+
+    Returns
+    -------
+    ndarray
+        Probabilities [-] between 0 and 1, shape (n(d + 2), d).
 
     Raises
     ------

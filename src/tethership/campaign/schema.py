@@ -29,7 +29,16 @@ LIMITS = (
 
 
 class CorrelatedGroup(Table):
-    """Quantities that vary together: rank correlation through a Gaussian copula."""
+    """Quantities that vary together, through a Gaussian copula.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Of quantities in `vary`.
+    correlation : tuple of tuple of float
+        ρ of the copula [-], symmetric with ones on its diagonal, shape (names, names); rank correlations are
+        (6/π) asin(ρ/2).
+    """
 
     names: Annotated[tuple[str, ...], Field(min_length=2)]
     correlation: tuple[tuple[float, ...], ...]
@@ -73,7 +82,17 @@ class LawConfig(Table):
 
 
 class CampaignLimits(Table):
-    """Limits besides the tensions that the scenario watches."""
+    """Limits besides the tensions that the scenario watches.
+
+    Attributes
+    ----------
+    winch_pull : float, optional
+        Tension at the anchor [N].
+    attitude : float, optional
+        Of |φ| and |θ| [rad].
+    time : float, optional
+        By which the ship must have docked [s].
+    """
 
     winch_pull: Annotated[float, Quantity("N", positive=True)] | None = None
     attitude: Annotated[float, Quantity("rad", positive=True, high=1.55)] | None = None
@@ -81,7 +100,15 @@ class CampaignLimits(Table):
 
 
 class Requirement(Table):
-    """A limit may be exceeded with `probability` at most, said with `confidence`."""
+    """A limit may be exceeded with `probability` at most, said with `confidence`.
+
+    Attributes
+    ----------
+    probability : float
+        Per flight [-].
+    confidence : float
+        Of the two-sided interval [-].
+    """
 
     limit: str
     probability: Probability
@@ -104,6 +131,15 @@ class CampaignConfig(Table):
     the way to a probability with an exact interval), `sobol` or `latin_hypercube` (evenly spread, in `replicates`
     independent scrambles from which intervals are taken), `grid` (every combination of levels) or `saltelli` (the
     design of Sobol's sensitivity indices). The `worst` and `random` flights are flown again with histories.
+
+    Attributes
+    ----------
+    step : float
+        Length of a fixed step h [s].
+    verified : float
+        Share of the flights that are flown again adaptively [-].
+    samples, replicates, worst, random : int
+        How many cases, scrambles, and flights of each law that are kept: the worst, and others.
     """
 
     title: Annotated[str, Field(max_length=200)]

@@ -176,6 +176,9 @@ def owner(folder: Path, plan: Plan) -> Manifest | None:
 def open_results(folder: str | Path) -> xr.Dataset:
     """Return a campaign's results: every metric over law and case, inputs over law, case and quantity.
 
+    Metrics carry their unit as an attribute: tensions [N], times [s], angles [deg], clearance [m], others as in
+    `UNITS`; inputs are in SI.
+
     Raises
     ------
     ConfigError

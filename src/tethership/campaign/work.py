@@ -37,7 +37,8 @@ def fly_batch(work: Work, batch: Batch) -> dict[str, np.ndarray]:
     Returns
     -------
     dict[str, ndarray]
-        As `fly_cases`, and `error_NAME` for each of `COMPARED`: |fixed/tight − 1|, NaN where it was not flown again.
+        As `fly_cases` (tensions [N], times [s], angles [deg]), and `error_NAME` [-] for each of `COMPARED`:
+        |fixed/tight − 1|, NaN where it was not flown again.
     """
     found = _flyer(work).fly(batch.values)
     errors = {name: np.full(len(batch.values), np.nan) for name in COMPARED}
@@ -74,7 +75,7 @@ def fly_one(scenario: Scenario, names: tuple[str, ...], values: np.ndarray, solv
     names : tuple of str
         Dotted names.
     values : ndarray
-        [SI], shape (names,).
+        In SI, e.g. `wind.speed` [m/s], shape (names,).
     solver : str
         As in `dock`.
 

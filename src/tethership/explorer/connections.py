@@ -47,7 +47,7 @@ class Handler(WSGIRequestHandler):
 
 
 class Incoming(io.RawIOBase):
-    """What a connection sends, no longer than `PATIENCE`, no more than `LARGEST_REQUEST`."""
+    """What a connection sends, no longer than `PATIENCE` [s], no more than `LARGEST_REQUEST` [bytes]."""
 
     def __init__(self, connection: socket.socket) -> None:
         self._connection = connection
@@ -59,7 +59,7 @@ class Incoming(io.RawIOBase):
         return True
 
     def readinto(self, buffer: Any) -> int:
-        """Read into a buffer and return how much; raises TimeoutError where the time is up."""
+        """Read into a buffer and return how much [bytes]; raises TimeoutError where the time is up."""
         patience = self._until - time.monotonic()
         if patience <= 0:
             raise TimeoutError("the request took too long")

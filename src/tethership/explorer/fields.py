@@ -28,11 +28,11 @@ class Field(NamedTuple):
     label : str
         Words beside it.
     unit : str
-        Unit in which it is shown and typed.
+        Unit in which it is shown and typed: degrees for angles, millimetres for cables' diameters, else the SI unit.
     text : str
         The scenario's own value, as shown.
     span : tuple of float, optional
-        Ends of its slider, in the shown unit; none without a slider.
+        Ends of its slider, in the shown unit ([deg] of an angle, else SI); none without a slider.
     """
 
     name: str
@@ -99,14 +99,17 @@ SPANS = {
 
 
 def shown_unit(parameter: Parameter) -> str:
-    """Return the unit in which a parameter is shown and typed."""
+    """Return the unit in which a parameter is shown and typed: for [rad] deg, for a cable's diameter mm, else SI."""
     if parameter.name.startswith("cables.") and parameter.name.endswith(".diameter"):
         return "mm"
     return SHOWN_UNITS.get(parameter.unit, parameter.unit)
 
 
 def shown(parameter: Parameter, value: float | None = None) -> str:
-    """Return a value [SI], or the parameter's own, as text in its shown unit."""
+    """Return a value in SI, or the parameter's own, as text in its shown unit, seven digits.
+
+    From [rad] to [deg] it is divided by π/180, from [m] to [mm] multiplied by 1000.
+    """
     factor = {"deg": 1.0 / DEGREE, "mm": 1e3}.get(shown_unit(parameter), 1.0)
     return f"{(parameter.value if value is None else value) * factor:.7g}"
 
@@ -153,7 +156,7 @@ def _field(parameter: Parameter, words: str) -> Field:
 
 
 def typed(parameter: Parameter, text: str, words: str | None = None) -> tuple[float, str]:
-    """Return the number and unit that were typed, in the shown unit where none was.
+    """Return the number and unit that were typed, in the shown unit where none was, e.g. 30 and deg for [rad].
 
     Raises
     ------
@@ -176,7 +179,7 @@ def typed(parameter: Parameter, text: str, words: str | None = None) -> tuple[fl
 
 
 def in_si(parameter: Parameter, number: tuple[float, str]) -> float:
-    """Return a typed number in SI."""
+    """Return a typed number in SI, the parameter's unit: 30 and deg as 0.5236 [rad]."""
     return converted(*number, parameter.unit)
 
 

@@ -52,6 +52,8 @@ def guard(
 ) -> None:
     """Refuse what does not come from a page of this server, and let its pages load nothing from elsewhere.
 
+    Refused are bodies of more than `LARGEST_BODY` [bytes] too.
+
     Parameters
     ----------
     server : Flask

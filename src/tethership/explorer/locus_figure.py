@@ -20,6 +20,8 @@ HEIGHT = 520
 def locus_figure(found: Sweep, own: Modes | None) -> dict[str, Any]:
     """Return the figure as plotly's JSON: all modes left, slow ones right, stars where the chosen scenario is.
 
+    Re λ [1/s] is across, Im λ [rad/s] up; slow is |λ| below `SLOWEST` [1/s].
+
     Parameters
     ----------
     found : Sweep

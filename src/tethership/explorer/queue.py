@@ -66,7 +66,7 @@ class Standing(NamedTuple):
     text : str
         What is being done, or why it failed.
     share : float, optional
-        Part that is done, where known.
+        Part that is done, 0 … 1 [-], where known.
     begun : float
         When it was asked for, or begun [s, monotonic].
     seconds : float
@@ -95,6 +95,9 @@ class Standing(NamedTuple):
 
 class Desk:
     """Takes requests and has them computed one after the other; safe to use from any thread.
+
+    Work for which nobody has asked for `GONE` [s] while other work waits, or for `FORGOTTEN` [s] while none does, is
+    stopped.
 
     Parameters
     ----------

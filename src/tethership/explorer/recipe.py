@@ -31,7 +31,7 @@ class Span(NamedTuple):
     name : str
         Dotted name.
     low, high : tuple of float and str
-        Ends, each a number with its unit.
+        Ends, each a number with its unit as typed, e.g. 6 and m/s for a wind [m/s].
     points : int
     si_unit : str
         Unit in which a bare number is taken.

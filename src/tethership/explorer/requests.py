@@ -88,7 +88,11 @@ class Understanding:
         return Span(parameter.name, *ends, count, parameter.unit)
 
     def usual_span(self, name: str, scenario: str) -> tuple[str, str, str, str]:
-        """Return the ends, points and unit that a locus over a parameter starts with; errors as `base`."""
+        """Return the ends, points and unit that a locus over a parameter starts with; errors as `base`.
+
+        Ends are in the shown unit: of an angle, 30° to both sides of its own value [deg]; of most others, from half of
+        it to one and a half.
+        """
         base = self.base(scenario)
         parameter = find_parameter(known_parameters(base.config), name, scenario)
         low, high, points = USUAL.get(name) or (*_around(parameter), 13)

@@ -34,9 +34,15 @@ def compute(view: str, path: str, changes: Mapping[str, Any], options: Mapping[s
     changes : mapping
         As `load_scenario` takes them.
     options : mapping
-        Of a locus: name, low, high (each a number and its unit), points.
+        Of a locus: name, low, high (each a number and its unit), points, unit (SI, to which both are converted).
     report : callable
         See `Report`.
+
+    Returns
+    -------
+    dict
+        Numbers in SI, tensions [N], lengths [m], times [s], eigenvalues [1/s], but angles [deg] and rates of turn
+        [deg/s]; figures as plotly's JSON.
 
     Raises
     ------

@@ -42,7 +42,7 @@ def _curves(plant: TetheredAirship, state: State) -> Float[Array, "cables 25 3"]
 
 
 def trim_figure(scenario: Scenario, point: TrimPoint) -> dict[str, Any]:
-    """Return the figure as plotly's JSON.
+    """Return the figure as plotly's JSON: the ship from the east and from above [m], and its throttles [-].
 
     Parameters
     ----------

@@ -51,7 +51,10 @@ def trim_head(result: dict[str, Any]) -> Any:
 
 
 def trim_rest(result: dict[str, Any]) -> Any:
-    """Return the numbers of a trim."""
+    """Return the numbers of a trim.
+
+    They are the place [m], angles [°], speeds [m/s], throttles [-], thrust and tensions [N] and what is left [N, N m].
+    """
     state = result["state"]
     values = [(words, _number(-state[n] if n == "down" else state[n]), unit) for n, words, unit in STATE]
     cables = [
@@ -89,7 +92,10 @@ def locus_head(result: dict[str, Any]) -> Any:
 
 
 def locus_rest(result: dict[str, Any]) -> Any:
-    """Return the modes of the chosen scenario and what happens along the sweep."""
+    """Return the modes of the chosen scenario and what happens along the sweep.
+
+    Of each mode λ [1/s], frequency [rad/s], damping [-], period and time to halve or double [s].
+    """
     if result["figure"] is None:
         return []
     header = ("mode", "λ [1/s]", "frequency [rad/s]", "damping", "period [s]", "amplitude")
@@ -122,7 +128,10 @@ def locus_rest(result: dict[str, Any]) -> Any:
 
 
 def flight_head(result: dict[str, Any]) -> Any:
-    """Return how the flight ended and its metrics."""
+    """Return how the flight ended and its metrics.
+
+    They are tensions [N], times [s], rewind rate [m/s], pitch [°], ADC [1/s], E [-], clearance [m].
+    """
     if result["figure"] is None:
         return verdict("bad", result["message"])
     sound = "fair" if result["reserved"] else "good"

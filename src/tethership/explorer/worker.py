@@ -28,7 +28,10 @@ class Stopped(TethershipError):
 
 
 class Worker:
-    """One computing process, started again after it had to be ended."""
+    """One computing process, started again after it had to be ended.
+
+    A job that is told to stop has `GRACE` [s] to notice, then its process is ended.
+    """
 
     def __init__(self) -> None:
         self._context = multiprocessing.get_context("spawn")
@@ -62,9 +65,9 @@ class Worker:
         job : tuple
             Arguments of `tasks.compute` but the last.
         progress : callable
-            Called with what is being done and the share that is done.
+            Called with what is being done and the share that is done [-].
         should_stop : callable
-            Asked several times a second.
+            Asked every `LISTEN` [s].
 
         Raises
         ------

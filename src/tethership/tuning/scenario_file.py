@@ -50,7 +50,10 @@ def _set(document: Any, name: str, value: float, source: str) -> bool:
 
 
 def set_quantity(entry: Any, value: float, source: str) -> None:
-    """Give a quantity of a document another value, to six digits, and another source, none if it is empty."""
+    """Give a quantity of a document another value, to six digits, and another source, none if it is empty.
+
+    The value is in the unit that the document's entry names.
+    """
     entry["value"] = float(f"{value:.6g}")
     if source:
         entry["source"] = source

@@ -37,9 +37,10 @@ class Archive:
     Attributes
     ----------
     places, residuals : list of ndarray
-        What was asked and what came, call by call.
+        What was asked, between the bounds, 0 … 1 [-], shape (vectors, unknowns), and what came, in tolerances [-],
+        shape (vectors, items), call by call.
     score : callable
-        What is made small.
+        What is made small [-].
     """
 
     def __init__(
@@ -61,33 +62,45 @@ class Archive:
         return found
 
     def keep(self, places: np.ndarray, found: np.ndarray) -> None:
-        """Take up vectors whose residuals are known."""
+        """Take up vectors, places 0 … 1 [-], whose residuals in tolerances [-] are known."""
         self.places.append(places.copy())
         self.residuals.append(found)
         self.least = min(self.least, float(self.score(found).min()))
 
     def all(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return places and residuals of everything looked at."""
+        """Return places, 0 … 1 [-], and residuals in tolerances [-] of everything looked at, the vectors first."""
         return np.concatenate(self.places), np.concatenate(self.residuals)
 
     def residuals_of(self, place: np.ndarray) -> np.ndarray:
-        """Return the residuals of one vector that was looked at."""
+        """Return the residuals in tolerances [-], shape (items,), of one vector that was looked at."""
         places, residual = self.all()
         return residual[int(np.argmin(np.abs(places - place).sum(axis=1)))]
 
     def best(self, count: int = 1) -> np.ndarray:
-        """Return the places of the best vectors, best first."""
+        """Return the places, 0 … 1 [-], of the best vectors, best first, shape (count, unknowns)."""
         places, residual = self.all()
         return places[np.argsort(self.score(residual), kind="stable")[:count]]
 
 
 def sobol(unknowns: int, power: int, seed: int) -> np.ndarray:
-    """Return 2^power scrambled Sobol points, 0 … 1."""
+    """Return 2^power scrambled Sobol points, 0 … 1 [-], shape (2^power, unknowns)."""
     return scipy.stats.qmc.Sobol(unknowns, rng=np.random.default_rng(seed)).random_base2(power)
 
 
 def evolve(archive: Archive, population: np.ndarray, generations: int, seed: int) -> None:
-    """Improve a population by differential evolution; everything looked at is in the archive."""
+    """Improve a population by differential evolution; everything looked at is in the archive.
+
+    Parameters
+    ----------
+    archive : Archive
+        Whose score is made small.
+    population : ndarray
+        Places 0 … 1 [-], shape (vectors, unknowns).
+    generations : int
+        How many, besides the first.
+    seed : int
+        Of everything random.
+    """
     scipy.optimize.differential_evolution(
         lambda x: archive.score(archive(np.atleast_2d(x.T))),
         [(0.0, 1.0)] * population.shape[1],
@@ -111,7 +124,8 @@ class Slopes(NamedTuple):
     places : ndarray
         Places of those residuals.
     function : callable
-        From one vector's places to their derivative (residuals, unknowns).
+        From one vector's places, 0 … 1 [-], to their derivative [-]: change in tolerances per width of a bound, shape
+        (residuals, unknowns).
     """
 
     places: np.ndarray
@@ -120,6 +134,17 @@ class Slopes(NamedTuple):
 
 def refine(archive: Archive, start: np.ndarray, exact: Slopes, most: int = 12) -> None:
     """Go downhill from a vector by least squares; everything looked at is in the archive.
+
+    Parameters
+    ----------
+    archive : Archive
+        Whose residuals are made small.
+    start : ndarray
+        Places 0 … 1 [-], shape (unknowns,).
+    exact : Slopes
+        Of the residuals that have an exact derivative.
+    most : int
+        How many vectors are looked at, at most, besides those of difference quotients.
 
     Notes
     -----
@@ -157,6 +182,11 @@ def spread(archive: Archive, rounds: int, size: int, seed: int) -> np.ndarray:
         its widths, 200 of 96 see 0.9 to 1.0.
     seed : int
         Of the random moves.
+
+    Returns
+    -------
+    ndarray
+        Places 0 … 1 [-], shape (members, unknowns); a member comes again where a walker stayed.
 
     Notes
     -----

@@ -92,11 +92,11 @@ class Tuning(NamedTuple):
     Attributes
     ----------
     gains : dict
-        Dotted name → value [SI].
+        Dotted name → value [SI]: of attitude [s/rad, 1/rad], rewind [m/(s N)], heading [1/rad], navigation [1/m, s/m].
     before, after : Judgement
         Of the scenario's own gains and of the tuned ones, over all perturbed flights.
     seconds : float
-        Wall time.
+        Wall time [s].
     vectors : int
         Sets of gains looked at.
     """
@@ -122,9 +122,9 @@ def judge(scenario: Scenario, gains: np.ndarray, columns: dict[str, np.ndarray])
     scenario : Scenario
         All of its layers act.
     gains : ndarray
-        In the order of `GAINS` [SI], shape (sets, gains).
+        In the order of `GAINS`, in SI as in `Tuning` [s/rad, 1/rad, m/(s N), 1/m, s/m], shape (sets, gains).
     columns : dict
-        From `perturbed`, shape (flights,).
+        From `perturbed`, shape (flights,): angles [rad], gust's start [s], wind [m/s].
     """
     sets, flights = len(gains), len(next(iter(columns.values())))
     cases = Cases(GAINS, np.repeat(gains, flights, axis=0))
@@ -196,6 +196,12 @@ def tune(
     progress : callable, optional
         See `Progress`.
 
+    Returns
+    -------
+    Tuning
+        Gains in SI, each between a tenth and ten times the scenario's own; tensions [N], times [s], shares [-] before
+        and after.
+
     Raises
     ------
     ConfigError
@@ -249,7 +255,7 @@ def _own_gains(scenario: Scenario) -> np.ndarray:
 
 
 def tuning_document(found: Tuning, scenario: Scenario, seed: int, flights: int) -> dict[str, Any]:
-    """Return a tuning as plain data."""
+    """Return a tuning as plain data: gains and the wind [m/s] in SI, the judgements, wall time [s]."""
     known = list_parameters(scenario.config)
     return {
         "scenario": scenario.name,

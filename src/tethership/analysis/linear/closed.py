@@ -42,7 +42,23 @@ def with_inputs(loop: ClosedLoop, inputs: Float[Array, "inputs"]) -> ClosedLoop:
 def loop_slopes(
     loop: ClosedLoop, vector: Float[Array, "n"], inputs: Float[Array, "inputs"]
 ) -> tuple[Float[Array, "n"], Float[Array, "n n"], Float[Array, "n inputs"]]:
-    """Return the rate of all states at a point and t = 0, and its slopes over states and inputs."""
+    """Return the rate of all states at a point and t = 0, and its slopes over states and inputs.
+
+    Parameters
+    ----------
+    loop : ClosedLoop
+    vector : Float[Array, "n"]
+        All states, in the order and the SI units of `plant.layout.closed_loop`.
+    inputs : Float[Array, "inputs"]
+        What `with_inputs` adds: throttles [-], deflections [rad], the wind's change [m/s] and its rate [m/s²], the last
+        two in ground axes.
+
+    Returns
+    -------
+    tuple
+        The rate [state unit/s], shape (n,); A [state unit/s per state unit], shape (n, n); U [state unit/s per input
+        unit], shape (n, inputs).
+    """
 
     def rate(together: Float[Array, "m"]) -> Float[Array, "n"]:
         return with_inputs(loop, together[len(vector) :]).vector_field(jnp.zeros(()), together[: len(vector)])
@@ -114,11 +130,19 @@ def closed_model(
     model : LinearModel
         Of the open loop there: its inputs, outputs and comparable coordinates.
     state, command
-        The point.
+        The point; throttles [-] and deflections [rad] of the command are those to which the laws' corrections are
+        added.
     law : AbstractLaw, optional
         Instead of the scenario's layers.
     lengths : bool
-        Let the cables' lengths be states; else they are held, and inputs.
+        Let the cables' lengths L_t [m] be states; else they are held, and inputs.
+
+    Returns
+    -------
+    LinearModel
+        With a sampled law the discrete model over its period T [s], which is `LinearModel.sample_time`; its
+        attribute `warnings` names channels at their ends or in their dead band, and a state that changes by more than
+        `MOVING` a second in its SI unit.
     """
     plant: TetheredAirship = scenario.system.at_mean()
     loop = build_loop(scenario.config, plant.with_winches_held(), command, scenario.law() if law is None else law)
@@ -164,12 +188,25 @@ def closed_model(
 
 
 def states_kept(loop: ClosedLoop) -> list[int]:
-    """Return the places of the states of a continuous closed loop whose cables' lengths are held."""
+    """Return the places of the states of a continuous closed loop without the cables' lengths, which are held."""
     return [i for i, name in enumerate(closed_loop(loop).names) if not name.startswith(LENGTH)]
 
 
 def state_matrix(loop: ClosedLoop, state: State) -> Float[Array, "n n"]:
-    """Return A of a continuous closed loop at a point, the cables' lengths held; can be traced."""
+    """Return A of a continuous closed loop at a point, the cables' lengths [m] held; can be traced.
+
+    Parameters
+    ----------
+    loop : ClosedLoop
+        Its laws are continuous.
+    state : State
+        Of the ship; cables, actuators and laws are at their rest about it.
+
+    Returns
+    -------
+    Float[Array, "n n"]
+        Slope of the rate at t = 0 [state unit/s per state unit], over the states that `states_kept` gives.
+    """
     kept = jnp.asarray(states_kept(loop))
     vector = loop.initial(state)
     slopes = jax.jacfwd(lambda x: loop.vector_field(jnp.zeros(()), x))(vector)

@@ -20,7 +20,13 @@ STEP = 1e-4
 def central_differences(
     plant: TetheredAirship, state: Float[Array, "12"], inputs: Float[Array, "inputs"]
 ) -> tuple[Float[Array, "12 12"], Float[Array, "12 inputs"]]:
-    """Return A and U by differences; arguments as in `semi_analytic`."""
+    """Return A and U by differences; arguments as in `semi_analytic`.
+
+    Notes
+    -----
+    (8 [f(h) − f(−h)] − [f(2h) − f(−2h)])/(12 h) along every state and input, h = `STEP` in the unit of each: A [state
+    unit/s per state unit], e.g. [1/s] of a velocity over itself; U [state unit/s per input unit].
+    """
     together = jnp.concatenate([state, inputs])
 
     def rates(vector: Float[Array, "n"]) -> Float[Array, "12"]:

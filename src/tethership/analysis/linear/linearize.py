@@ -40,14 +40,14 @@ WORST_CONDITION = 1e8
 
 
 class Matrices(NamedTuple):
-    """A and U of a point.
+    """A and U of a point: Δṡ = A Δs + U Δδ.
 
     Attributes
     ----------
     state : Float[Array, "n n"]
-        A.
+        A [state unit/s per state unit]: [1/s] on the diagonal.
     input : Float[Array, "n inputs"]
-        U.
+        U [state unit/s per input unit].
     """
 
     state: Float[Array, "n n"]
@@ -61,7 +61,8 @@ def differentiate(plant: TetheredAirship, state: Float[Array, "n"], inputs: Floa
     ----------
     plant : TetheredAirship
     state : Float[Array, "n"]
-        s₀.
+        s₀, in the order of `plant.layout.open_loop`: U, V, W [m/s] and p, q, r [rad/s] in body axes, φ, θ, ψ [rad],
+        north, east, down [m], then throttles [-] and deflections [rad] that actuators which lag have reached.
     inputs : Float[Array, "inputs"]
         δ₀, as `input_vector` returns them.
     """
@@ -80,12 +81,18 @@ def comparable_coordinates(plant: TetheredAirship, state: Float[Array, "n"]) -> 
     ----------
     plant : TetheredAirship
     state : Float[Array, "n"]
+        As in `differentiate` [m/s, rad/s, rad, m, and units of the actuators].
+
+    Returns
+    -------
+    Float[Array, "n n"]
+        Times Δs it gives velocities and turning speeds at the hull's end [m/s], displacements there and of P [m].
 
     Notes
     -----
     Velocities become those relative to the air, v − Rᵀv_w: in them the heading mode of a free ship is ψ alone and
-    side-slip is what the word says. Rates and angles are multiplied by half the hull's length; states of actuators are
-    left in their own units.
+    side-slip is what the word says. Rates and angles are multiplied by half the hull's length [m]; states of actuators
+    are left in their own units.
     """
 
     def coordinates(vector: Float[Array, "n"]) -> Float[Array, "n"]:

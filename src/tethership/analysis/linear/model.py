@@ -58,18 +58,20 @@ class LinearModel:
     Attributes
     ----------
     A : ndarray
-        State matrix [state unit per second per state unit], shape (n, n).
+        State matrix [state unit per second per state unit], shape (n, n); of a discrete model [state unit per state
+        unit].
     U : ndarray
-        Input matrix, shape (n, inputs).
+        Input matrix [state unit per second per input unit], shape (n, inputs); of a discrete model [state unit per
+        input unit].
     states, inputs : tuple of str
         Names in the order of the matrices.
     state_units, input_units : tuple of str
-        Their SI units.
+        Their SI units, as text; "1" for a throttle.
     state_values, input_values : ndarray
-        Where the model holds.
+        Where the model holds, in these units, shapes (n,) and (inputs,).
     comparable : ndarray
         Matrix to comparable coordinates, shape (n, n): velocity relative to the air, rates and angles times half the
-        hull's length, so that every entry is in m/s or m at the hull's end.
+        hull's length [m], so that every entry is in m/s or m at the hull's end.
     attributes : dict
         Formulation, outcome of the trim, the scenario as read.
     controls : tuple of str
@@ -78,9 +80,10 @@ class LinearModel:
         Names and SI units of what is measured besides the states: `tension_…` of each cable at the ship, `airspeed`,
         `angle_of_attack`, `sideslip` (these three only with airspeed), `rate_of_climb`, `clearance`.
     output_values : ndarray
-        y₀.
+        y₀, in the outputs' units, shape (outputs,).
     C, D : ndarray
-        Output matrices, shapes (outputs, n) and (outputs, inputs).
+        Output matrices [output unit per state unit] and [output unit per input unit], shapes (outputs, n) and (outputs,
+        inputs).
     """
 
     A: np.ndarray
@@ -107,11 +110,11 @@ class LinearModel:
 
     @property
     def disturbances(self) -> tuple[str, ...]:
-        """Inputs that nobody commands: the wind's change and rate, and lengths of cables without their winch."""
+        """Inputs that nobody commands: the wind's change [m/s] and rate [m/s²], lengths [m] of cables without winch."""
         return tuple(name for name in self.inputs if name not in self.controls)
 
     def modes(self) -> "Modes":
-        """Return the modes: eigenvalues, names, participation (see `modes.find_modes`)."""
+        """Return the modes: eigenvalues [1/s], names, participation [-] (see `modes.find_modes`)."""
         from tethership.analysis.modes.modes import find_modes
 
         return find_modes(self)
@@ -146,21 +149,21 @@ class LinearModel:
         )
 
     def without_position(self) -> "LinearModel":
-        """Return the model of nine states usual for free airships: position is held."""
+        """Return the model of nine states usual for free airships: north, east and down [m] are held."""
         return self.select([name for name in self.states if name not in POSITION])
 
     def longitudinal(self) -> "LinearModel":
-        """Return the model of u, w, q, θ, north, down (those that are there), cable lengths included.
+        """Return the model of u, w [m/s], q [rad/s], θ [rad], north, down and cable lengths [m], those that are there.
 
         Raises
         ------
         ConfigError
-            They are coupled with the lateral states, so that this would be another ship.
+            They are coupled with the lateral states (`coupling` above 1e-6), so that this would be another ship.
         """
         return self._part((*LONGITUDINAL, *(name for name in self.states if name.startswith(LENGTH))))
 
     def lateral(self) -> "LinearModel":
-        """Return the model of v, p, r, φ, ψ, east (those that are there); raises as `longitudinal`."""
+        """Return the model of v [m/s], p, r [rad/s], φ, ψ [rad], east [m], those there are; raises likewise."""
         return self._part(LATERAL)
 
     def coupling(self, states: Sequence[str]) -> float:
@@ -220,6 +223,10 @@ class LinearModel:
         ------
         ConfigError
             A name is not in the model, or there is no input.
+
+        Notes
+        -----
+        Every signal keeps its SI unit, throttles theirs [-]; a discrete model's `dt` is its `sample_time` [s].
         """
         import control
 

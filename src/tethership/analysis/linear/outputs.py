@@ -40,9 +40,10 @@ class Outputs(NamedTuple):
     names, units : tuple of str
         Names and SI units, in the order of the rows.
     values : ndarray
-        y₀ at the point.
+        y₀ at the point, in these units: tensions [N], airspeed and rate of climb [m/s], α and β [rad], clearance [m].
     state, input : ndarray
-        C, shape (outputs, states), and D, shape (outputs, inputs).
+        C [output unit per state unit], shape (outputs, states), and D [output unit per input unit], shape (outputs,
+        inputs).
     """
 
     names: tuple[str, ...]
@@ -106,6 +107,11 @@ def linear_outputs(
         s₀ and δ₀, as in `right_side`.
     cables : tuple of str
         Names of the cables.
+
+    Notes
+    -----
+    Airspeed, α and β are left out below an airspeed of `STILL` [m/s], as is all that is not finite or has slopes that
+    are not.
     """
     values, slopes = map(np.asarray, _slopes(plant, state, inputs))
     told = reading_names(plant)

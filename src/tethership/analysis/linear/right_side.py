@@ -44,7 +44,8 @@ def right_side(plant: TetheredAirship, state: Float[Array, "n"], inputs: Float[A
     ----------
     plant : TetheredAirship
     state : Float[Array, "n"]
-        In the order of `plant.layout.open_loop`: ship, actuators that lag, parts of one's own.
+        In the order of `plant.layout.open_loop`: the ship's twelve [m/s, rad/s, rad, m], then throttles [-] and
+        deflections [rad] that actuators which lag have reached, then states of parts of one's own.
     inputs : Float[Array, "inputs"]
         As `input_vector` returns them; channels that lag are asked so much, the others do it.
     """

@@ -40,14 +40,14 @@ class SemiAnalytic(NamedTuple):
     Attributes
     ----------
     mass : Float[Array, "12 12"]
-        M̃.
+        M̃: Mⁱ + Mᵃ about P, body axes [kg, kg m, kg m²], then ones [-] for the kinematics.
     stiffness : Float[Array, "12 12"]
-        K̃.
+        K̃: of the motion's rows [N, N m] per unit of each state, of the kinematics' [rad/s, m/s] per unit of each.
     state_sensitivity : dict[str, Float[Array, "6 12"]]
-        W_s of each load by the paper's letter a, b, p, g, t: change of its force and moment about P, body axes, per
-        unit of each state.
+        W_s of each load by the paper's letter a, b, p, g, t: change of its force and moment about P, body axes
+        [N, N m], per unit of each state.
     input_sensitivity : dict[str, Float[Array, "6 inputs"]]
-        W_δ likewise, per unit of each input.
+        W_δ likewise [N, N m], per unit of each input.
     """
 
     mass: Float[Array, "12 12"]
@@ -56,11 +56,11 @@ class SemiAnalytic(NamedTuple):
     input_sensitivity: dict[str, Float[Array, "6 inputs"]]
 
     def state_matrix(self) -> np.ndarray:
-        """Return A = M̃⁻¹(W̃ₛ − K̃), 12×12."""
+        """Return A = M̃⁻¹(W̃ₛ − K̃), shape (12, 12): [1/s] on the diagonal, else [state unit/s per state unit]."""
         return np.linalg.solve(np.asarray(self.mass), _stacked(self.state_sensitivity) - np.asarray(self.stiffness))
 
     def input_matrix(self) -> np.ndarray:
-        """Return U = M̃⁻¹ W̃_δ, 12×inputs."""
+        """Return U = M̃⁻¹ W̃_δ [state unit/s per input unit], shape (12, inputs): e.g. [m/s²] over a throttle [-]."""
         return np.linalg.solve(np.asarray(self.mass), _stacked(self.input_sensitivity))
 
 
@@ -129,9 +129,9 @@ def semi_analytic(plant: TetheredAirship, state: Float[Array, "12"], inputs: Flo
     ----------
     plant : TetheredAirship
     state : Float[Array, "12"]
-        Reference state s₀.
+        Reference state s₀ in the order of `STATE_NAMES` [m/s, rad/s, rad, m].
     inputs : Float[Array, "inputs"]
-        Reference inputs, as `input_vector` returns them.
+        Reference inputs, as `input_vector` returns them: throttles [-], deflections [rad], wind [m/s, m/s²], L_t [m].
     """
     here = State.from_vector(state)
 

@@ -54,9 +54,9 @@ class Batch(NamedTuple):
     Attributes
     ----------
     unknowns : array
-        Solution in the unknowns' units.
+        Solution in the unknowns' units (`analysis.trim.unknowns.SCALES`).
     state : array
-        Twelve states.
+        Twelve states in the order of `STATE_NAMES` [m/s, rad/s, rad, m].
     throttle, deflection : array
         δ [-] of thrusters and [rad] of fins, not clipped.
     tension, largest : array
@@ -70,9 +70,9 @@ class Batch(NamedTuple):
     limit : array
         Largest residual of an equilibrium [N, N m].
     matrix : array
-        A [SI], (states, states).
+        A [state unit/s per state unit], (states, states).
     comparable : array
-        Matrix to comparable coordinates, (states, states).
+        Matrix to comparable coordinates, (states, states), as `comparable_coordinates` returns it.
     """
 
     unknowns: Any
@@ -93,10 +93,17 @@ class Batch(NamedTuple):
 def nearby_equilibrium(problem: Problem, start: Float[Array, "unknowns"]) -> Float[Array, "unknowns"]:
     """Return the unknowns of an equilibrium with the least effort, from a start nearby.
 
+    Parameters
+    ----------
+    problem : Problem
+        As `pose` returns it.
+    start : Float[Array, "unknowns"]
+        Where to begin, each in its unit: 1 m/s, 0.1 rad/s, 0.1 rad, 1 m, and throttles [-] and deflections [rad].
+
     Notes
     -----
-    Gauss–Newton on the balance and a small weight on the effort (as `equilibrium.solve`): the fixed point has the
-    least norm of throttles to 1e-6 and a residual far below that of an equilibrium.
+    Gauss–Newton on the balance and a small weight on the effort (as `analysis.trim.solve.solve`): the fixed point has
+    the least norm of throttles to 1e-6 and a residual far below that of an equilibrium.
     """
     effort = EFFORT**2 * problem.unknowns.effort
     longest = jnp.where(problem.unknowns.effort > 0, jnp.inf, LARGEST_STEP)
@@ -191,13 +198,18 @@ def solve_points(
     reference : ndarray
         Parameters of the known trim [SI].
     start : ndarray
-        Its unknowns.
+        Its unknowns, in their units, shape (unknowns,).
     per_line : int
-        Points of each line, neighbours close to each other.
+        How many points each line has, neighbours close to each other.
     usual : sequence of int
         Leaves that the program can move although these points do not: sweeps of any of them share it.
     closed : bool
         Matrices of the closed loop, with the scenario's laws.
+
+    Returns
+    -------
+    Batch
+        Numpy arrays, the points first: tensions [N], heights [m], residuals [N, N m] and so on.
     """
     leaves = jax.tree.leaves(config)
     column = {place: i for i, group in enumerate(places) for place in group}
@@ -302,7 +314,11 @@ def _branch(unknowns: np.ndarray, good: np.ndarray, nearest: np.ndarray, line: n
 
 
 def in_equilibrium(batch: Batch) -> np.ndarray:
-    """Return which points (first axis) are in equilibrium, with a state matrix that is finite."""
+    """Return which points (first axis) are in equilibrium, with a state matrix that is finite.
+
+    Residuals are held against the batch's own limit [N, N m], rates of what must stand still against `DRIFT_LIMIT`
+    [rad/s, m/s].
+    """
     small = np.abs(batch.residual).max(axis=1) <= batch.limit
     small &= np.abs(batch.drift).max(axis=1) <= DRIFT_LIMIT
     return small & np.isfinite(batch.matrix).all(axis=(1, 2))

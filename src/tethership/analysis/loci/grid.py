@@ -30,7 +30,21 @@ USUAL = (
 
 
 def lay_grid(scenario: Scenario, axes: tuple[Axis, ...]) -> tuple[list[Parameter], np.ndarray, tuple[int, ...]]:
-    """Return the parameters, their values at all points (points, parameters) and the shape of the grid."""
+    """Return the parameters, their values [SI] at all points (points, parameters) and the shape of the grid.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        From `load_scenario`.
+    axes : tuple of mapping
+        Names and values of the parameters moved together along each axis; a length is in [m], an angle in [rad].
+
+    Raises
+    ------
+    ConfigError
+        It is no scenario, a name or a range is not usable, two move the same number, there are more than `MOST_POINTS`,
+        or a value is outside what the file allows.
+    """
     if not isinstance(scenario, Scenario):
         raise ConfigError(f"sweep: a scenario is needed, not {scenario!r}; give what load_scenario() returns")
     known = list_parameters(scenario.config)
@@ -87,7 +101,18 @@ def _checked(name: str, given: Sequence[float] | np.ndarray) -> np.ndarray:
 
 
 def fill_lines(grid: np.ndarray, count: int, fill: int) -> tuple[np.ndarray, int]:
-    """Return the points with `fill` − 1 more between neighbours of every line, and how many a line then has."""
+    """Return the points with `fill` − 1 more between neighbours of every line, and how many a line then has.
+
+    Parameters
+    ----------
+    grid : ndarray
+        Parameters of every point in SI ([m], [m/s], [rad], …), shape (points, parameters), the points of a line in a
+        row.
+    count : int
+        How many points a line has.
+    fill : int
+        Into how many equal steps each step is cut.
+    """
     lines = grid.reshape(-1, count, grid.shape[1])
     places = np.linspace(0.0, count - 1.0, (count - 1) * fill + 1)
     before = np.minimum(places.astype(int), max(count - 2, 0))

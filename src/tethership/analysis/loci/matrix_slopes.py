@@ -50,7 +50,8 @@ def matrix_slopes(
 
     Notes
     -----
-    Slopes have the shape (parameters, 12, 12).
+    Slopes are [state unit/s per state unit, per unit of the parameter], shape (parameters, n, n) for n states: e.g. of
+    a velocity over itself with a length [1/(s m)].
 
     Raises
     ------

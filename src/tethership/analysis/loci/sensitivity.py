@@ -54,7 +54,7 @@ class Sensitivity(NamedTuple):
     derivative : complex or None
         dλ/dp [1/s per unit]; None where there is none, see `reason`.
     step : float
-        A change of ordinary size: 1 % of the value; of a value of zero or an angle, see `ordinary_step`.
+        A change of ordinary size [SI]: 1 % of the value; of a value of zero or an angle, see `ordinary_step`.
     shift : complex or None
         derivative · step [1/s]; rows are ranked by its modulus.
     reason : str
@@ -113,6 +113,11 @@ def sensitivities(scenario: Scenario, mode: str, point: TrimPoint | None = None)
     point : TrimPoint, optional
         Its trim; computed if not given.
 
+    Returns
+    -------
+    Sensitivities
+        dλ/dp [1/s per unit of p] of every parameter, ranked by the shift |dλ/dp · step| [1/s] of an ordinary step.
+
     Raises
     ------
     SolveError
@@ -131,7 +136,7 @@ def sensitivities(scenario: Scenario, mode: str, point: TrimPoint | None = None)
 def rank_sensitivities(
     scenario: Scenario, modes: Sequence[str], point: TrimPoint | None = None
 ) -> tuple[Sensitivities, ...]:
-    """Return the tables of several modes; arguments and errors as in `sensitivities`."""
+    """Return the tables of several modes, λ and shifts [1/s]; arguments and errors as in `sensitivities`."""
     found = trim(scenario) if point is None else point
     if found.outcome is TrimOutcome.no_equilibrium:
         raise SolveError(f"{found.outcome.value} Without it there are no modes.")
@@ -203,10 +208,17 @@ def _rows(
 def ordinary_step(parameter: Parameter, length: float) -> float:
     """Return a change of ordinary size, in the unit of the parameter.
 
+    Parameters
+    ----------
+    parameter : Parameter
+        Its value is in its SI unit.
+    length : float
+        Length of the hull [m].
+
     Notes
     -----
-    1 % of the value. Where that is zero 1 % of the hull's length for lengths, else 0.01 of the unit; for angles
-    0.01 rad; for a coefficient of the hull's profile 0.01.
+    1 % of the value. Where that is zero 1 % of the hull's length for lengths [m], else 0.01 of the unit; for angles
+    0.01 rad; for a coefficient of the hull's profile [-] 0.01.
     """
     if parameter.value != 0.0 and parameter.unit != "rad" and not parameter.name.startswith(COEFFICIENTS):
         return 0.01 * abs(parameter.value)

@@ -49,7 +49,7 @@ class Happening(NamedTuple):
     Attributes
     ----------
     kind : str
-        coalesce, split, cross, unstable, stable (see `events.Event`).
+        coalesce, split, cross, unstable, stable (see `locus_events.Event`).
     tracks : tuple of str
         Whose.
     name : str
@@ -90,15 +90,17 @@ class Sweep:
     outcomes : tuple of TrimOutcome
         How each point's trim ended: points without one stay.
     states, throttle, deflection, tension, residual : ndarray
-        The trims: twelve states, δ [-] and [rad] (not clipped), tensions [N], force and moment left over [N, N m].
+        The trims: twelve states [m/s, rad/s, rad, m], δ of thrusters [-] and fins [rad] (not clipped), tensions [N],
+        force and moment left over [N, N m]; shapes (points, 12), (points, thrusters), (points, fins), (points, cables)
+        and (points, 6).
     largest : ndarray
-        Largest tension along each cable [N].
+        Largest tension along each cable [N], shape (points, cables).
     clearance_hull : ndarray
         Height of the hull's lowest point above the ground [m], NaN without ground; shape (points,).
     clearance_cable : ndarray
         The same of the cables' lowest point [m], NaN without cables.
     matrices : ndarray
-        A at every point, shape (points, states, states).
+        A at every point [state unit/s per state unit], shape (points, states, states).
     path : Path
         Eigenvalues and eigenvectors (columns, comparable coordinates) at every point, in the solver's order.
     orders : ndarray of int
@@ -141,7 +143,7 @@ class Sweep:
 
     @property
     def unstable_throughout(self) -> tuple[str, ...]:
-        """Tracks that are unstable at every point in equilibrium, so that no event tells of them."""
+        """Tracks with Re λ [1/s] above rounding at every point in equilibrium, so that no event tells of them."""
         growing = unstable_throughout(self.eigenvalues, self.trimmed)
         return tuple(name for name, of in zip(self.tracks, growing, strict=True) if of)
 
@@ -198,9 +200,15 @@ def sweep(scenario: Scenario, *axes: Axis, loop: str = "open") -> Sweep:
         From `load_scenario`.
     *axes : mapping
         Each axis moves one parameter or several together: ``{"wind.speed": np.linspace(6, 12, 13)}``. More than one
-        axis make a grid. Values in SI; names as in the file (`cables.nose.length`, `vehicle.fins.*.area`).
+        axis make a grid. Values in SI, speeds [m/s], angles [rad]; names as in the file (`cables.nose.length`,
+        `vehicle.fins.*.area`).
     loop : str
         `open`, or `closed` with the scenario's laws: a sweep of a gain is then its root locus.
+
+    Returns
+    -------
+    Sweep
+        λ [1/s] of every track at every point, the trims, and the events between.
 
     Notes
     -----
@@ -373,7 +381,7 @@ def _happenings(
 
 
 def local_names(path: Path, point: int, states: Sequence[str] = STATE_NAMES) -> list[str]:
-    """Return the name of every eigenvalue's mode at a valid point, from participation there, in the path's order."""
+    """Return the name of every eigenvalue's mode at a valid point, from participation [-], in the path's order."""
     share, partner = participation(path, point), path.partners[point]
     slots, chosen = slots_of(states), assign(share, states, partner)
     names = []

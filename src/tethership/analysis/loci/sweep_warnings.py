@@ -8,7 +8,11 @@ from tethership.results.limits import HARMFUL
 
 
 def sweep_warnings(found: Sweep) -> list[str]:
-    """Return limits passed and cables below the ground among the points in trim, a sentence for each kind."""
+    """Return limits passed and cables below the ground among the points in trim, a sentence for each kind.
+
+    Each says how many points, and the worst: its tension over the limit [-], or how far a cable is below the ground
+    [m].
+    """
     points, count = np.flatnonzero(found.trimmed), len(found.outcomes)
     passed = {int(point): found.limits_passed(int(point)) for point in points}
     warnings = []

@@ -55,7 +55,13 @@ def _inverses(vectors: Complex) -> Complex:
 
 
 def partners_of(values: Complex) -> np.ndarray:
-    """Return the place of each eigenvalue's conjugate; its own where it is real. The last axis is the eigenvalues."""
+    """Return the place of each eigenvalue's conjugate; its own where it is real.
+
+    Parameters
+    ----------
+    values : ndarray
+        λ [1/s], complex, the eigenvalues along the last axis.
+    """
     distance = np.abs(values[..., :, None] - values[..., None, :].conj())
     return np.where(values.imag == 0.0, np.arange(values.shape[-1]), np.argmin(distance, axis=-1))
 
@@ -66,7 +72,7 @@ def participation(path: Path, index: int) -> Real:
 
 
 def named_order(path: Path, index: int, states: tuple[str, ...]) -> np.ndarray:
-    """Return the place of each slot's eigenvalue at a point, by names."""
+    """Return the place of each slot's eigenvalue at a point, by participation [-]; shape (n,)."""
     chosen = assign(participation(path, index), states, path.partners[index])
     return _upper_first(path, index, np.argsort(chosen))
 
@@ -84,11 +90,20 @@ def _upper_first(path: Path, index: int, order: np.ndarray) -> np.ndarray:
 def matched(path: Path, before: int, after: int, order: np.ndarray) -> np.ndarray:
     """Return the order of the eigenvalues at a point `after` that continues the one at `before`.
 
+    Parameters
+    ----------
+    path : Path
+        Its points.
+    before, after : int
+        Two of them, valid ones.
+    order : ndarray of int
+        Place of each track's eigenvalue at `before`, shape (n,).
+
     Notes
     -----
-    Cost of a pair: one less |w₁v₂ w₂v₁|, plus the relative distance of the eigenvalues. With w₁v₁ = 1 the product is 1
-    for a mode and its continuation and 0 for any other, even where right eigenvectors are nearly parallel (the slow
-    modes, which all drift mostly north); |v₁ᴴv₂|² settles what it leaves open at a defective eigenvalue.
+    Cost of a pair [-]: one less |w₁v₂ w₂v₁|, plus the relative distance of the eigenvalues. With w₁v₁ = 1 the product
+    is 1 for a mode and its continuation and 0 for any other, even where right eigenvectors are nearly parallel (the
+    slow modes, which all drift mostly north); |v₁ᴴv₂|² settles what it leaves open at a defective eigenvalue.
     """
     right, left = path.vectors[before][:, order], path.left[before][order]
     old, new = path.values[before][order], path.values[after]
@@ -110,7 +125,7 @@ def follow(path: Path, start: int, order: np.ndarray, states: tuple[str, ...], s
     path : Path
         Points close enough that eigenvectors change little.
     start : int
-        A valid point.
+        A valid point, where following starts both ways.
     order : ndarray of int
         Place of each track's eigenvalue there.
     states : tuple of str

@@ -61,12 +61,12 @@ class Mode(NamedTuple):
 
     @property
     def stable(self) -> bool:
-        """Whether its amplitude falls; an undamped mode's does not."""
+        """Whether its amplitude falls: Re λ < 0 [1/s] beyond rounding. An undamped mode's does not."""
         return self.half_or_double_time is not None and self.eigenvalue.real < 0
 
     @property
     def oscillates(self) -> bool:
-        """Whether it is a pair of conjugates."""
+        """Whether it is a pair of conjugates: Im λ [rad/s] is not zero."""
         return self.eigenvalue.imag != 0
 
 
@@ -78,7 +78,7 @@ class Modes(NamedTuple):
     modes : tuple of Mode
         One per real eigenvalue or pair.
     spectrum : Spectrum
-        All eigenvalues, groups and projectors, in comparable coordinates.
+        All eigenvalues [1/s], groups and projectors, in comparable coordinates.
     """
 
     modes: tuple[Mode, ...]
@@ -124,7 +124,12 @@ def find_modes(model: LinearModel) -> Modes:
     Parameters
     ----------
     model : LinearModel
-        Whole or reduced.
+        Whole or reduced, of an open or closed loop.
+
+    Returns
+    -------
+    Modes
+        The fastest first: λ [1/s], |λ| [rad/s], damping [-], times [s], shape and participation [-] of each.
 
     Notes
     -----

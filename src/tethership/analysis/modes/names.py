@@ -89,11 +89,16 @@ def assign(participation: np.ndarray, states: Sequence[str], pairs: np.ndarray) 
     Parameters
     ----------
     participation : ndarray
-        |share| of each state (rows) in each eigenvalue (columns), shape (n, n).
+        |share| of each state (rows) in each eigenvalue (columns) [-], shape (n, n).
     states : sequence of str
         Names of the rows.
     pairs : ndarray of int
-        Place of each eigenvalue's conjugate; its own where it is real.
+        Place of each eigenvalue's conjugate, its own where it is real, shape (n,).
+
+    Returns
+    -------
+    ndarray of int
+        Place of each eigenvalue's slot in `slots_of(states)`, shape (n,).
     """
     slots = slots_of(states)
     weights = np.array([[slot.signature.get(state, 0.0) for state in states] for slot in slots])

@@ -27,9 +27,9 @@ class Spectrum(NamedTuple):
     Attributes
     ----------
     eigenvalues : ndarray
-        Complex, shape (n,); those of a group that belong together are all its mean.
+        λ [1/s], complex, shape (n,); those of a group that belong together are all its mean.
     vectors : ndarray
-        Right eigenvectors as columns, largest entry 1, shape (n, n).
+        Right eigenvectors as columns, largest entry 1 [-], shape (n, n).
     participation : ndarray
         |share| of each state (rows) in each eigenvalue (columns) [-], shape (n, n): |w_k v_k|, for a group the diagonal
         of its projector over its size.
@@ -57,7 +57,7 @@ def analyse(matrix: Real, error: float = ROUNDING) -> Spectrum:
     matrix : ndarray
         A in comparable coordinates [1/s], shape (n, n).
     error : float
-        Relative error of A within which eigenvalues are not told apart.
+        Relative error of A within which eigenvalues are not told apart [-].
     """
     found: Any = scipy.linalg.eig(matrix, left=True, right=True)
     values: Complex = np.asarray(found[0], dtype=np.complex128)

@@ -48,7 +48,19 @@ class Judged(NamedTuple):
 
 
 def judge(scenario: Scenario, found: Described, limit: float, height_sought: bool) -> Judged:
-    """Return what is said of one point of a scenario; arguments as in `outcomes`."""
+    """Return what is said of one point of a scenario.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Says limits, ground, thrusters and fins.
+    found : Described
+        What there is at the point.
+    limit : float
+        Largest residual of an equilibrium [N, N m].
+    height_sought : bool
+        As in `outcomes`.
+    """
     config = scenario.config
     saturated = _beyond(scenario, found)
     rows = Points(*(np.asarray(part)[None] for part in (found.residual, found.drift, found.hull, found.cables)))

@@ -35,7 +35,7 @@ class Question(NamedTuple):
     places : tuple of int
         Places of quantities that are given.
     values : Float[Array, "given"]
-        Their values [SI, rad].
+        Their values in SI: of velocities [m/s], rates [rad/s], angles [rad], places [m], throttles [-].
     """
 
     unknowns: Unknowns
@@ -46,14 +46,29 @@ class Question(NamedTuple):
 
     @property
     def height_sought(self) -> bool:
-        """Whether the height of P is looked for."""
+        """Whether the height of P, which is −down [m], is looked for."""
         return DOWN in self.unknowns.index
 
 
 def ask(
     scenario: Scenario, unknowns: Sequence[str] | None = None, fixed: Mapping[str, float] | None = None
 ) -> Question:
-    """Return what a scenario's trim asks; arguments and errors as in `trim`."""
+    """Return what a scenario's trim asks.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Its `trim` table says what `unknowns` and `fixed` leave open.
+    unknowns : sequence of str, optional
+        As in `trim`.
+    fixed : mapping, optional
+        As in `trim`, values in SI: [m/s], [rad/s], [rad], [m], throttles [-].
+
+    Raises
+    ------
+    ConfigError
+        A name is not known; or it follows from what is held (north, east, down) or from a turn (p, q, r).
+    """
     vehicle = scenario.config.vehicle
     thrusters = [thruster.name for thruster in vehicle.thrusters]
     fins = [fin.name for fin in vehicle.fins]
@@ -76,7 +91,7 @@ def ask(
 
 
 def pose(config: ScenarioConfig, plant: TetheredAirship, question: Question) -> Problem:
-    """Return the problem that a solver needs.
+    """Return the problem that a solver needs: all quantities where the search starts [m/s, rad/s, rad, m, -].
 
     Parameters
     ----------

@@ -32,7 +32,8 @@ class Problem(eqx.Module):
     ----------
     plant : TetheredAirship
     base : Float[Array, "n"]
-        All quantities (12 of the motion, throttles, deflections) with the fixed ones in place.
+        All quantities with the fixed ones in place: twelve of the motion as `plant.names.QUANTITIES`, the velocity in
+        *ground* axes [m/s, rad/s, rad, m], then throttles [-] and deflections [rad].
     unknowns : Unknowns
         Which of them are looked for.
     hold_tether : bool
@@ -48,7 +49,20 @@ class Problem(eqx.Module):
     turning: Float[Array, "3"] | None = None
 
     def unpack(self, values: Float[Array, "unknowns"]) -> tuple[State, Command]:
-        """Return state and command for values of the unknowns, in units of their scales."""
+        """Return state and command for values of the unknowns.
+
+        Parameters
+        ----------
+        values : Float[Array, "unknowns"]
+            In units of their scales: 1 m/s, 0.1 rad/s, 0.1 rad, 1 m, and throttles [-] and deflections [rad] as they
+            are.
+
+        Returns
+        -------
+        tuple of State and Command
+            Velocity [m/s] and rates [rad/s] in body axes, φ, θ, ψ [rad], x_P in ground axes [m]; the command is not
+            clipped.
+        """
         ship = self.plant.ship
         everything = self.unknowns.placed(self.base, values)
         rotation = rotation_matrix(everything[6:9])
@@ -62,7 +76,7 @@ class Problem(eqx.Module):
         return state, Command(everything[12 : 12 + count], everything[12 + count :])
 
     def balance(self, values: Float[Array, "unknowns"]) -> Float[Array, "balances"]:
-        """Return the residual for values of the unknowns, in units of 1e-3 of the weight [-].
+        """Return the residual for values of the unknowns, in units of 1e-3 of the weight [-]; moments times 1 m.
 
         Where motion is looked for, the rates of what must stand still follow, in units of 1e-3 rad/s and m/s.
         """
@@ -75,7 +89,7 @@ class Problem(eqx.Module):
 
     @property
     def moving(self) -> range:
-        """Places of the quantities that move what must stand still: rates, and on a cable the velocity."""
+        """Places of quantities that move what must stand still: rates [rad/s], and on a cable the velocity [m/s]."""
         return range(0 if self.plant.cables else 3, 6)
 
 
@@ -87,6 +101,17 @@ def _balance(problem: Problem, values: Float[Array, "unknowns"]) -> tuple[Array,
 
 def solve(problem: Problem) -> np.ndarray:
     """Return the values of the unknowns of least residual found.
+
+    Parameters
+    ----------
+    problem : Problem
+        As `posed` returns it.
+
+    Returns
+    -------
+    ndarray
+        In units of `Unknowns.scale`: 1 m/s, 0.1 rad/s, 0.1 rad, 1 m, and throttles [-] and deflections [rad] as they
+        are.
 
     Notes
     -----
@@ -185,7 +210,15 @@ class Described(NamedTuple):
 
 @eqx.filter_jit
 def described(problem: Problem, values: Float[Array, "unknowns"]) -> Described:
-    """Return what there is for values of the unknowns, in their units."""
+    """Return what there is for values of the unknowns: state, tensions [N], residual [N, N m], heights [m] at t = 0.
+
+    Parameters
+    ----------
+    problem : Problem
+        As `pose` returns it.
+    values : Float[Array, "unknowns"]
+        In the units that `Problem.unpack` takes.
+    """
     state, command = problem.unpack(values)
     plant, ground = problem.plant, problem.plant.environment.ground
     lengths = plant.initial_lengths()

@@ -25,7 +25,7 @@ class TrimPoint(NamedTuple):
     Attributes
     ----------
     state : State
-        The twelve states.
+        The twelve states: velocity [m/s] and rates [rad/s] in body axes, φ, θ, ψ [rad], x_P in ground axes [m].
     command : Command
         Throttles [-] and deflections [rad], beyond their limits where saturated.
     tension : Float[Array, "cables"]
@@ -78,7 +78,8 @@ def trim(
         What is looked for: `velocity_north` … `down` (see `unknowns.QUANTITIES`), names of thrusters
         or fins, `throttle`, `deflection`.
     fixed : mapping, optional
-        Values of quantities that are not looked for, or where the search starts [SI, rad].
+        Values of quantities that are not looked for, or where the search starts: velocities in ground axes [m/s], rates
+        in body axes [rad/s], angles and deflections [rad], places in ground axes [m], throttles [-].
     throw : bool
         Raise SolveError where there is no equilibrium.
 
@@ -110,7 +111,20 @@ def trim(
 
 
 def solved(scenario: Scenario, question: Question) -> tuple[np.ndarray, TrimPoint]:
-    """Return the unknowns, in their units, and the point that answer what a scenario's trim asks."""
+    """Return the unknowns and the point that answer what a scenario's trim asks.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        From `load_scenario`.
+    question : Question
+        From `ask`.
+
+    Returns
+    -------
+    tuple
+        The unknowns in their units, as `solve` returns them, and the TrimPoint: tensions [N], residual [N, N m].
+    """
     problem = posed(scenario.config.as_arrays(), scenario.system, question)
     values = solve(problem)
     found = described(problem, jnp.asarray(values))

@@ -26,9 +26,10 @@ class Unknowns(eqx.Module):
     index : tuple of int
         Places of the chosen ones.
     scale : Float[Array, "unknowns"]
-        Unit of each, so that a step of 1 is moderate for all.
+        Unit of each, so that a step of 1 is moderate for all: 1 m/s, 0.1 rad/s, 0.1 rad, 1 m; of throttles 1 [-], of
+        deflections 1 [rad].
     effort : Float[Array, "unknowns"]
-        1 for throttles and deflections, whose norm is kept least, 0 for states.
+        Weight [-]: 1 for throttles and deflections, whose norm is kept least, 0 for states.
     """
 
     index: tuple[int, ...] = eqx.field(static=True)
@@ -36,16 +37,19 @@ class Unknowns(eqx.Module):
     effort: Float[Array, "unknowns"]
 
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the least and largest value of each in its unit: roll within ±90° and pitch within ±80°."""
+        """Return the least and largest value of each in units of its scale: φ within ±π/2, θ within ±80π/180 [rad].
+
+        All others have no bound (±∞). Shapes (unknowns,).
+        """
         reach = np.array([LARGEST.get(i, np.inf) for i in self.index]) / np.asarray(self.scale)
         return -reach, reach
 
     def taken(self, everything: np.ndarray) -> np.ndarray:
-        """Return the chosen quantities in their units."""
+        """Return the chosen ones of all quantities [m/s, rad/s, rad, m, -], divided by their scales."""
         return everything[list(self.index)] / np.asarray(self.scale)
 
     def placed(self, everything: Float[Array, "n"], values: Float[Array, "unknowns"]) -> Float[Array, "n"]:
-        """Return all quantities with the chosen ones replaced."""
+        """Return all quantities [m/s, rad/s, rad, m, -] with the chosen ones replaced by values times their scales."""
         return everything.at[np.array(self.index, dtype=int)].set(values * self.scale)
 
 
@@ -55,6 +59,14 @@ def find_unknowns(
     fins: list[str],
 ) -> Unknowns:
     """Return the choice of what is looked for.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Of `plant.names.QUANTITIES` (looked for in steps of 1 m/s, 0.1 rad/s, 0.1 rad, 1 m), of thrusters (1 [-]) and
+        fins (1 [rad]), or `throttle` and `deflection` for all of them.
+    thrusters, fins : list of str
+        Names of the vehicle's.
 
     Raises
     ------

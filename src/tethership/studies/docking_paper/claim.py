@@ -41,7 +41,7 @@ class Claim(NamedTuple):
 
 
 def pair(value: complex) -> list[float]:
-    """Return a complex number as [real, imaginary]."""
+    """Return a complex number, an eigenvalue [1/s], as [real, imaginary]."""
     return [float(value.real), float(value.imag)]
 
 
@@ -66,7 +66,10 @@ def growth(mode: Mode | None) -> float:
 
 
 def where_met(found: Sweep, kind: str, *tracks: str) -> float | None:
-    """Return where (first parameter) two tracks do something together, or None."""
+    """Return where two tracks do something together, or None.
+
+    It is the value of the sweep's first parameter there, in SI: a diameter or a place [m], a wind [m/s].
+    """
     for event in found.events:
         if event.kind == kind and (set(event.tracks) == set(tracks) or event.name in _joined(tracks)):
             return next(iter(event.at.values()))
@@ -79,13 +82,13 @@ def _joined(words: tuple[str, ...]) -> set[str]:
 
 
 def ends(found: Sweep, *tracks: str) -> dict[str, list[list[float]]]:
-    """Return first and last eigenvalue of modes, followed as tracks or, for the slow ones, named at each point."""
+    """Return first and last eigenvalue of modes, λ [1/s] as pairs, as `followed` finds them."""
     values = {name: followed(found, name) for name in tracks}
     return {name: [pair(value[0]), pair(value[-1])] for name, value in values.items()}
 
 
 def followed(found: Sweep, name: str) -> Complex:
-    """Return a mode's eigenvalues along a sweep.
+    """Return a mode's eigenvalues λ [1/s] along a sweep, complex, shape (points,); NaN where there is none.
 
     Notes
     -----

@@ -56,7 +56,7 @@ LAST = 2.0 / 3.0
 
 
 def claim_5(flights: Flights) -> Claim:
-    """D5: where peaks of tension come from."""
+    """D5: where peaks of tension come from; of the others time [s], tension [N], elongation [-]."""
     found = read(flights, peaks)
     parts = {}
     for table in TABLES:
@@ -87,7 +87,7 @@ def _told(peak: Peak) -> list[float | None]:
 
 
 def claim_6(flights: Flights) -> Claim:
-    """D6: each layer lowers the peak."""
+    """D6: each layer lowers the peak [N]."""
     peak = read(flights, metric("tension_max"))
     parts = {
         f"navigation < heading < rewind at {wind:g} m/s": holds(
@@ -99,7 +99,10 @@ def claim_6(flights: Flights) -> Claim:
 
 
 def claim_7(flights: Flights, grounded: Flights) -> Claim:
-    """D7: ground effect; the paper speaks of it for rewind control (section 4.1), so that is what is judged."""
+    """D7: ground effect; the paper speaks of it for rewind control (section 4.1), so that is what is judged.
+
+    Numbers are the change of the peak [-], the peaks without and with it [N] and the largest vertical wind [m/s].
+    """
     without, felt = read(flights, metric("tension_max")), read(grounded, metric("tension_max"))
     change = {key: felt[key] / without[key] - 1.0 for key in KEYS if key in felt and key in without}
     lift = read(grounded, _vertical_wind)
@@ -125,7 +128,7 @@ def _vertical_wind(flight: Flight) -> float:
 
 
 def claim_8(flights: Flights) -> Claim:
-    """D8: no throttle saturates."""
+    """D8: no throttle saturates; for how long one is clipped [s]."""
     seconds = read(flights, metric("saturated_seconds"))
     parts = {
         f"no throttle saturates with {table} at {wind:g} m/s": holds(
@@ -145,7 +148,7 @@ def _never_slowed(rate: float) -> bool:
 
 
 def claim_9(flights: Flights) -> Claim:
-    """D9: what navigation reaches."""
+    """D9: what navigation reaches: slowest rewind rate Ψ [m/s], peak tension [N]."""
     keys = [("navigation", wind) for wind in WINDS]
     slowest, peak = read(flights, _slowest, keys), read(flights, metric("tension_max"), keys)
     parts = {f"Ψ is never reduced at {key[1]:g} m/s": holds(slowest, [key], _never_slowed) for key in keys[:2]}
@@ -158,7 +161,10 @@ def claim_9(flights: Flights) -> Claim:
 
 
 def claim_10(flights: Flights) -> Claim:
-    """D10: thrown sideways; the paper speaks of Figs. 12 and 13, at 12 m/s."""
+    """D10: thrown sideways [m]; the paper speaks of Figs. 12 and 13, at 12 m/s.
+
+    Numbers are ways sideways [m], and when peaks come as shares of the manoeuvre [-].
+    """
     thrown = read(flights, throw)
     share = read(flights, _peak_shares)
     rewind, heading = ("rewind", 12.0), ("heading", 12.0)
@@ -204,7 +210,7 @@ def _in_thirds(shares: list[float]) -> list[int]:
 
 
 def claim_11(flights: Flights) -> Claim:
-    """D11: the shortest time."""
+    """D11: the shortest time [s], and who docks in it: those whose winch, Ψ [m/s], was never slowed."""
     time = read(flights, lambda flight: float(flight.data["time"][-1]))
     slowest = read(flights, _slowest)
     steady = [key for key, rate in slowest.items() if _never_slowed(rate)]

@@ -70,7 +70,26 @@ class CableMotion(NamedTuple):
 
 
 def flown_cable(flight: Flight, cable: int = 0) -> tuple[Cable, CableMotion]:
-    """Return a flight's cable, rebuilt from its scenario, and its motion; raises ConfigError if there is none."""
+    """Return a flight's cable, rebuilt from its scenario, and its motion.
+
+    Parameters
+    ----------
+    flight : Flight
+        Recorded.
+    cable : int
+        Which of its cables, from 0.
+
+    Returns
+    -------
+    tuple of Cable and CableMotion
+        At the flight's instants [s]: tether point from anchor, ground axes [m], length [m], wind at the middle of the
+        two, ground axes [m/s]; density, mean over the flight [kg/m³].
+
+    Raises
+    ------
+    ConfigError
+        The flight has no such cable.
+    """
     if not 0 <= cable < flight.data.sizes["cable"]:
         raise ConfigError(f"the flight has {flight.data.sizes['cable']} cable(s); there is no cable {cable}")
     stored = flight.attributes

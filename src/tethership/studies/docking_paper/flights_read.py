@@ -73,12 +73,12 @@ class Peak(NamedTuple):
 
     @property
     def from_sagging(self) -> bool:
-        """Whether e came up to 1 from a sagging cable."""
+        """Whether e [-] came up to 1 from a sagging cable."""
         return self.elongation >= TAUT and self.lowest is not None and self.lowest < SAGGING
 
 
 def peaks(flight: Flight) -> list[Peak]:
-    """Return the peaks of tension above `CONTROL_THRESHOLD` of the first cable, in order.
+    """Return the peaks of tension above `CONTROL_THRESHOLD` [N] of the first cable, in order of time [s].
 
     Notes
     -----
@@ -124,7 +124,7 @@ class Throw(NamedTuple):
 
 
 def throw(flight: Flight) -> Throw:
-    """Return how far a ship is thrown sideways.
+    """Return how far a ship is thrown sideways [m].
 
     Notes
     -----
@@ -142,7 +142,7 @@ def throw(flight: Flight) -> Throw:
 
 
 def metric(name: str) -> Callable[[Flight], float]:
-    """Return what reads a metric of `results.docking_metrics` off a flight."""
+    """Return what reads a metric of `results.docking_metrics` off a flight, in its unit: [N], [s], [m/s], [deg]."""
     return lambda flight: float(flight.metrics[name])
 
 
@@ -166,5 +166,5 @@ def tell(flights: Flights, found: Mapping[FlightKey, Any], keys: Iterable[Flight
 
 
 def name_of(key: FlightKey) -> str:
-    """Return a flight's name: `heading, 12 m/s`."""
+    """Return a flight's name, of its table and wind [m/s]: `heading, 12 m/s`."""
     return f"{key[0]}, {key[1]:g} m/s"

@@ -64,10 +64,17 @@ def compare_line(flight: Flight, title: str, segments: int = SEGMENTS) -> dict[s
     segments : int
         Of the line.
 
+    Returns
+    -------
+    dict
+        Peaks and differences of tension [N], their ratio and correlation [-], `time` and `peak_time` [s]; `snap_delay`
+        is in [ms], `outside` a share of the time [-].
+
     Notes
     -----
-    `trusted` and `untrusted` have the median and the 90th percentile of the difference over the larger tension (at
-    least 20 N) inside and outside the range of `quasi_static`, `worst_trusted` the largest difference inside [N].
+    `trusted` and `untrusted` have the median and the 90th percentile of the relative difference [-], over the larger
+    tension (at least 20 N), inside and outside the range of `quasi_static`; `worst_trusted` is the largest difference
+    inside [N].
 
     Raises
     ------

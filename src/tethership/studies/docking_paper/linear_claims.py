@@ -55,7 +55,7 @@ def fins(lift_area: float) -> dict[str, float]:
 
 
 def claim_1(changes: Changes) -> Claim:
-    """L1: the untethered ship of nine states."""
+    """L1: the untethered ship of nine states; λ [1/s] of every mode."""
     modes = free_modes(changes, nine_states=True)
     found = {mode.name: mode for mode in modes.modes}
     pitch, yaw = found.get("pitch subsidence"), found.get("yaw subsidence")
@@ -85,7 +85,7 @@ def claim_1(changes: Changes) -> Claim:
 
 
 def claim_2(changes: Changes) -> Claim:
-    """L2: position adds two null modes and a slow vertical one."""
+    """L2: position adds two null modes and a slow vertical one; λ [1/s], the vertical one's without ∂ρ/∂h too."""
     modes = free_modes(changes)
     north, east, vertical = (find_mode(modes, name) for name in ("north", "east", "vertical"))
     scenario = load_scenario("hover", {**changes, "atmosphere": {"model": "constant", "density": _density()}})
@@ -113,7 +113,7 @@ def _cable_sweep(changes: Changes, scenario: str, cables: str, heavy: bool) -> S
 
 
 def claim_3(changes: Changes) -> Claim:
-    """L3: one light cable, up to 6 g/m."""
+    """L3: one light cable, up to 6 g/m; λ [1/s] at both ends, where modes coalesce [m], the tension [N]."""
     found = _cable_sweep(changes, "docking", "cables.nose", heavy=False)
     surge, north, east, vertical = (followed(found, name) for name in ("surge", "north", "east", "vertical"))
     parts = {
@@ -134,7 +134,7 @@ def claim_3(changes: Changes) -> Claim:
 
 
 def claim_4(changes: Changes) -> Claim:
-    """L4: one heavier cable, up to 140 g/m."""
+    """L4: one heavier cable, up to 140 g/m; λ [1/s] and damping [-] at both ends, where modes coalesce [m]."""
     light = _cable_sweep(changes, "docking", "cables.nose", heavy=False)
     found = _cable_sweep(changes, "docking", "cables.nose", heavy=True)
     surge = followed(found, "surge")
@@ -166,7 +166,7 @@ def claim_4(changes: Changes) -> Claim:
 
 
 def claim_5(changes: Changes) -> Claim:
-    """L5: two side cables."""
+    """L5: two side cables; λ [1/s] at both ends, diameters at which modes coalesce [m]."""
     one = _cable_sweep(changes, "docking", "cables.nose", heavy=False)
     light = _cable_sweep(changes, "side_cables", "cables.*", heavy=False)
     heavy = _cable_sweep(changes, "side_cables", "cables.*", heavy=True)
@@ -204,7 +204,7 @@ def claim_5(changes: Changes) -> Claim:
 
 
 def claim_6(changes: Changes) -> Claim:
-    """L6: the tether point along the bottom line."""
+    """L6: the tether point along the bottom line; λ [1/s] at both ends, where modes coalesce, ahead of B [m]."""
     scenario = load_scenario("docking", changes)
     forward, down = bottom_line(scenario)
     found = sweep(scenario, {"cables.nose.tether_point.0": forward, "cables.nose.tether_point.2": down})
@@ -230,7 +230,7 @@ def claim_6(changes: Changes) -> Claim:
 
 
 def claim_7(changes: Changes) -> Claim:
-    """L7: wind from 6 to 12 m/s."""
+    """L7: wind from 6 to 12 m/s; λ [1/s] and damping [-] at both ends, the wind at which the pendulum splits [m/s]."""
     found = sweep(load_scenario("docking", changes), {"wind.speed": np.linspace(6.0, 12.0, 13)})
     pitch, yaw, pendulum = (followed(found, name) for name in ("pitch subsidence", "yaw subsidence", "pendulum"))
     damping = -pendulum.real / np.abs(pendulum)
@@ -253,7 +253,7 @@ def claim_7(changes: Changes) -> Claim:
 
 
 def claim_8(changes: Changes) -> Claim:
-    """L8: elongation from 0.5 to 0.95."""
+    """L8: elongation from 0.5 to 0.95 [-]; λ [1/s], damping [-] and |dλ/de₀| [1/s]."""
     found = sweep(load_scenario("docking", changes), {"trim.elongation": ELONGATIONS})
     value = found.values["trim.elongation"]
     parts: dict[str, bool] = {}
@@ -274,7 +274,7 @@ def claim_8(changes: Changes) -> Claim:
 
 
 def claim_9(changes: Changes) -> Claim:
-    """L9: no trim beyond 0.95."""
+    """L9: no trim beyond an elongation of 0.95 [-]; the largest |throttle| that each asks for [-]."""
     values = (0.95, 0.96, 0.97, 0.98, 0.99, 0.995, 1.0, 1.01, 1.02)
     found = sweep(load_scenario("docking", changes), {"trim.elongation": values})
     largest = np.abs(found.throttle).max(axis=1)

@@ -64,13 +64,13 @@ Changes = Mapping[str, Any]
 
 
 def free_ship(changes: Changes) -> Scenario:
-    """Return the untethered ship where it would be on the cable."""
+    """Return the untethered ship where it would be on the cable: at `TETHER_POINT` less `NOSE`, along north [m]."""
     place = TETHER_POINT - np.array([NOSE, 0.0, 0.0])
     return load_scenario("hover", {"trim.position": place.tolist(), **changes})
 
 
 def free_modes(changes: Changes, nine_states: bool = False) -> Modes:
-    """Return the modes of the untethered ship, of twelve states or of nine."""
+    """Return the modes of the untethered ship, λ [1/s], of twelve states or of nine."""
     scenario = free_ship(changes)
     model = linearize(scenario, trim(scenario))
     return (model.without_position() if nine_states else model).modes()
@@ -101,7 +101,7 @@ def bottom_line(scenario: Scenario) -> tuple[np.ndarray, np.ndarray]:
 
 
 def figure_6(changes: Changes) -> tuple[Panel, ...]:
-    """Free ship at rest in 6 m/s: nine states against twelve."""
+    """Free ship at rest in a wind of 6 m/s, λ [1/s]: nine states against twelve."""
     scenario = free_ship(changes)
     twelve = sweep(scenario, {"wind.speed": [scenario.config.wind.speed]})
     return (Panel("untethered", twelve, "wind.speed", 0, free_modes(changes, nine_states=True), slow=False),)
@@ -120,17 +120,17 @@ def _cable_panels(scenario: Scenario, cables: str, changes: Changes) -> tuple[Pa
 
 
 def figure_7(changes: Changes) -> tuple[Panel, ...]:
-    """One cable at the nose, from nothing to heavy."""
+    """One cable at the nose, from nothing to heavy, coloured by its diameter [m]."""
     return _cable_panels(load_scenario("docking", changes), "cables.nose", changes)
 
 
 def figure_8(changes: Changes) -> tuple[Panel, ...]:
-    """Two cables at the sides, from nothing to heavy."""
+    """Two cables at the sides, from nothing to heavy, coloured by their diameter [m]."""
     return _cable_panels(load_scenario("side_cables", changes), "cables.*", changes)
 
 
 def figure_9(changes: Changes) -> tuple[Panel, ...]:
-    """Move the tether point along the bottom line, nose to tail."""
+    """Move the tether point along the bottom line, nose to tail, coloured by how far forward of B it is [m]."""
     scenario = load_scenario("docking", changes)
     forward, down = bottom_line(scenario)
     found = sweep(scenario, {"cables.nose.tether_point.0": forward, "cables.nose.tether_point.2": down})
@@ -138,7 +138,7 @@ def figure_9(changes: Changes) -> tuple[Panel, ...]:
 
 
 def figure_10(changes: Changes) -> tuple[Panel, ...]:
-    """Wind from 6 to 12 m/s."""
+    """Wind from 6 to 12 [m/s]."""
     found = sweep(load_scenario("docking", changes), {"wind.speed": np.linspace(6.0, 12.0, 13)})
     return (
         Panel("wind", found, "wind.speed", 0, None, slow=False),
@@ -147,7 +147,7 @@ def figure_10(changes: Changes) -> tuple[Panel, ...]:
 
 
 def figure_11(changes: Changes) -> tuple[Panel, ...]:
-    """Elongation from 0.5 to 0.95."""
+    """Elongation from 0.5 to 0.95 [-]."""
     found = sweep(load_scenario("docking", changes), {"trim.elongation": ELONGATIONS})
     star = ELONGATIONS.index(0.8)
     return (

@@ -59,13 +59,13 @@ def study_scenario(settings: Settings, wind: float | None = None, ground_effect:
 
 
 def flight_file(folder: Path, key: FlightKey, grounded: bool = False) -> Path:
-    """Return where a flight of the study is kept."""
+    """Return where a flight of the study, by its table and wind [m/s], is kept."""
     table, wind = key
     return folder / "flights" / f"{table}_{wind:g}{'_ground_effect' if grounded else ''}.nc"
 
 
 def load_flights(folder: Path, grounded: bool = False) -> dict[FlightKey, Flight]:
-    """Return the study's flights by table and wind, as far as they could be flown."""
+    """Return the study's flights by table and wind [m/s], as far as they could be flown."""
     keys = [(table, wind) for table in TABLES for wind in WINDS]
     return {
         key: Flight.load(flight_file(folder, key, grounded))
@@ -75,7 +75,7 @@ def load_flights(folder: Path, grounded: bool = False) -> dict[FlightKey, Flight
 
 
 def fly_part(folder: Path, settings: Settings) -> dict[str, Any]:
-    """Fly the nine flights of Tables 3–5, and again with ground effect."""
+    """Fly the nine flights of Tables 3–5, and again with ground effect, whose coefficient is `GROUND_EFFECT` [1/m]."""
     files, trims = [], {}
     for wind in WINDS:
         for coefficient in (0.0, GROUND_EFFECT):
@@ -105,13 +105,13 @@ def claim_data(claim: Any) -> dict[str, Any]:
 
 
 def linear_part(folder: Path, settings: Settings) -> dict[str, Any]:
-    """Judge claims L1–L9 with the identified ship."""
+    """Judge claims L1–L9 with the identified ship; eigenvalues are [1/s]."""
     changes = {"formulation": settings.formulation, "vehicle": vehicle_name(settings.formulation)}
     return {"claims": {name: claim_data(claim(changes)) for name, claim in CLAIMS.items()}}
 
 
 def variant_part(folder: Path, settings: Settings) -> dict[str, Any]:
-    """Compute the misfit to the tables of every reading: at the identified ship, and at the one fitted to it."""
+    """Compute the misfit to the tables [-] of every reading: at the identified ship, and at the one fitted to it."""
     fit = stored_fit(settings.formulation)
     scenario = study_scenario(settings)
     best = np.array(list(fit["parameters"].values()))
@@ -148,7 +148,7 @@ TERMS_WIND = 12.0
 
 
 def term_part(folder: Path, settings: Settings) -> dict[str, Any]:
-    """Break down the loads at 12 m/s and switch off each term."""
+    """Break down the loads [N, N m] at 12 m/s and switch off each term: peak tensions [N], times [s], θ_rms [deg]."""
     flights = load_flights(folder)
     scenario = study_scenario(settings, TERMS_WIND)
     return {
@@ -160,7 +160,10 @@ def term_part(folder: Path, settings: Settings) -> dict[str, Any]:
 
 
 def retuned_part(folder: Path, settings: Settings) -> dict[str, Any]:
-    """Fly the paper's gains and the retuned ones at 12 m/s, once and perturbed."""
+    """Fly the paper's gains and the retuned ones at 12 m/s, once and perturbed.
+
+    Numbers are tensions [N], times [s], ADC [1/s], E [-], θ_rms [deg] and shares of the perturbed flights [-].
+    """
     layers = TABLES["navigation"]
     paper = study_scenario(settings, TERMS_WIND)
     tuned = load_scenario("docking_retuned")
@@ -197,7 +200,7 @@ LINE_FLIGHTS = (("rewind", 6.0), ("rewind", 12.0), ("navigation", 6.0), ("naviga
 
 
 def cable_part(folder: Path, settings: Settings) -> dict[str, Any]:
-    """Fly the cables of recorded flights again as dynamic lines, under both tension laws."""
+    """Fly the cables of recorded flights again as dynamic lines, under both tension laws: tensions [N], times [s]."""
     laws = {"published": "the paper's cable", "consistent": "elastic catenary"}
     cases: dict[str, Any] = {}
     try:

@@ -48,7 +48,7 @@ TEAR_FORCE = 481.0
 
 
 def claim_1(flights: Flights, verdicts: Verdicts) -> Claim:
-    """D1: Table 3."""
+    """D1: Table 3. Numbers are in the metrics' units: tensions [N], rates [m/s], times [s]; ratios are [-]."""
     peak = read(flights, metric("tension_max"))
     parts, numbers = _table(flights, verdicts, "rewind")
     parts["peak tension is above the tear force at 12 m/s"] = holds(
@@ -61,7 +61,7 @@ def claim_1(flights: Flights, verdicts: Verdicts) -> Claim:
 
 
 def claim_2(flights: Flights, verdicts: Verdicts) -> Claim:
-    """D2: Table 4."""
+    """D2: Table 4. Numbers are in the metrics' units: tensions [N], rates [m/s], times [s]; ratios are [-]."""
     peak, indices = read(flights, metric("tension_max")), read(flights, _indices)
     parts, numbers = _table(flights, verdicts, "heading")
     for wind in WINDS:
@@ -77,7 +77,7 @@ def claim_2(flights: Flights, verdicts: Verdicts) -> Claim:
 
 
 def claim_3(flights: Flights, verdicts: Verdicts) -> Claim:
-    """D3: Table 5."""
+    """D3: Table 5. Numbers are in the metrics' units: tensions [N], rates [m/s], times [s]; ratios are [-]."""
     peak = read(flights, metric("tension_max"))
     parts, numbers = _table(flights, verdicts, "navigation")
     parts["tension stays below 144.3 N at 6 m/s"] = holds(
@@ -87,7 +87,7 @@ def claim_3(flights: Flights, verdicts: Verdicts) -> Claim:
 
 
 def claim_4(flights: Flights, verdicts: Verdicts) -> Claim:
-    """D4: Table 6."""
+    """D4: Table 6: ADC [1/s], E [-], θ_rms [deg]."""
     duty, energy, pitch = (read(flights, metric(name)) for name in TABLE_6)
     parts: dict[str, bool] = {}
     for wind in WINDS:

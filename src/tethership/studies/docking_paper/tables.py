@@ -44,7 +44,7 @@ def verdict(metric: str, published: float, computed: float | None) -> str:
     metric : str
         As in `results.docking_metrics`; times over a threshold begin with `seconds_above`.
     published, computed : float
-        The same unit; None where the flight gave no such number.
+        The same unit, a tension [N], a time [s] and so on; None where the flight gave no such number.
     """
     if computed is None:
         return "differs"
@@ -58,7 +58,9 @@ def verdict(metric: str, published: float, computed: float | None) -> str:
 
 
 def computed_numbers(flight: Flight) -> dict[str, float | None]:
-    """Return the numbers of a flight by the names of the tables' columns, SI, θ_rms in degrees.
+    """Return the numbers of a flight by the names of the tables' columns.
+
+    They are in SI, tensions [N], rates [m/s], times [s], ADC [1/s], E [-], but θ_rms in degrees [deg].
 
     Notes
     -----
@@ -76,12 +78,12 @@ def computed_numbers(flight: Flight) -> dict[str, float | None]:
 
 
 def published_numbers() -> dict[FlightKey, dict[str, float]]:
-    """Return the published numbers of each flight by the same names."""
+    """Return the published numbers of each flight, by table and wind [m/s], in the units of `computed_numbers`."""
     return {(row.table, row.wind): _named(row) for row in published_rows()}
 
 
 def held_out() -> frozenset[FlightKey]:
-    """Return the flights whose published numbers were not fitted."""
+    """Return the flights, by table and wind [m/s], whose published numbers were not fitted."""
     return frozenset((row.table, row.wind) for row in published_rows() if row.held_out)
 
 
@@ -96,12 +98,13 @@ def _named(row: Row) -> dict[str, float]:
 def compare(flights: Mapping[FlightKey, Flight]) -> dict[str, list[dict[str, Any]]]:
     """Return the rows of every flight by its table's key.
 
-    A row has layers, wind, metric, published, computed, ratio, verdict, held_out and outcome.
+    A row has layers, wind [m/s], metric, published and computed (in the metric's unit), ratio [-], verdict, held_out
+    and outcome.
 
     Parameters
     ----------
     flights : mapping
-        By table and wind, of those in the paper's tables.
+        By table and wind [m/s], of those in the paper's tables.
     """
     published, apart = published_numbers(), held_out()
     rows: dict[str, list[dict[str, Any]]] = {table: [] for table in TABLES}

@@ -69,7 +69,14 @@ NUDGES = {"+1 %": 1.01, "-1 %": 0.99}
 
 
 class WeightedApparentMass(eqx.Module):
-    """An apparent mass with its parts weighted."""
+    """An apparent mass with its parts weighted.
+
+    Attributes
+    ----------
+    base : AbstractApparentMass
+    weights : dict of str to Float[Array, ""]
+        Weight of each of `PARTS` [-]: 1 acts, 0 does not.
+    """
 
     base: AbstractApparentMass
     weights: dict[str, Float[Array, ""]]
@@ -99,7 +106,14 @@ class WeightedApparentMass(eqx.Module):
 
 
 class WeightedEnvelope(eqx.Module):
-    """An envelope with its potential load weighted."""
+    """An envelope with its potential load weighted.
+
+    Attributes
+    ----------
+    base : AbstractEnvelope
+    weights : dict of str to Float[Array, ""]
+        Weight of each of `PARTS` [-]: 1 acts, 0 does not.
+    """
 
     base: AbstractEnvelope
     weights: dict[str, Float[Array, ""]]
@@ -114,7 +128,14 @@ class WeightedEnvelope(eqx.Module):
 
 
 class WeightedAtmosphere(AbstractAtmosphere):
-    """Air with its change of density weighted."""
+    """Air with its change of density weighted.
+
+    Attributes
+    ----------
+    base : AbstractAtmosphere
+    weights : dict of str to Float[Array, ""]
+        Weight of each of `PARTS` [-]: 1 acts, 0 does not.
+    """
 
     base: AbstractAtmosphere
     weights: dict[str, Float[Array, ""]]
@@ -132,7 +153,7 @@ def _weighed(whole: Wrench, parts: dict[str, Array], weights: dict[str, Array]) 
 
 
 def weighted(scenario: Scenario, without: Collection[str] = ()) -> Scenario:
-    """Return the scenario with some of `PARTS` taken out of its plant; without none it flies as before.
+    """Return the scenario with some of `PARTS` taken out of its plant, weight 0 [-]; without none it flies as before.
 
     Its document still says the whole scenario: such a flight cannot be flown again from a file.
     """
@@ -144,7 +165,15 @@ def weighted(scenario: Scenario, without: Collection[str] = ()) -> Scenario:
 
 
 def switched_off(scenario: Scenario, term: str) -> Scenario | None:
-    """Return the scenario without one of `TERMS`, None where it has no such term; raises ConfigError if none has."""
+    """Return the scenario without one of `TERMS`, None where it has no such term.
+
+    Numbers are set to zero, but for `net_weight`, whose mass is that of the displaced air at the origin, ρ𝒱 [kg].
+
+    Raises
+    ------
+    ConfigError
+        There is no such term.
+    """
     if term not in TERMS:
         raise ConfigError(f"no term {term!r}{suggestion(term, TERMS)} Known: {', '.join(TERMS)}")
     parts = {name for name in PARTS if f"parts.{name}" in TERMS[term]}

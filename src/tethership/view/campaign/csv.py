@@ -23,7 +23,7 @@ OUTSIDE = ("median", "largest")
 
 
 def write_exceedance(folder: Path, answers: dict[str, Any]) -> Path:
-    """Write the probability of passing each limit under each law; returns where."""
+    """Write the probability [-] of passing each limit, which has its unit beside it, under each law; returns where."""
     keys = (
         "value",
         "unit",
@@ -47,7 +47,10 @@ def write_exceedance(folder: Path, answers: dict[str, Any]) -> Path:
 
 
 def write_flights(folder: Path, plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray]) -> Path:
-    """Write every flight, a row each: what was drawn [SI], how it ended, its metrics, limits passed; returns where."""
+    """Write every flight, a row each: what was drawn, how it ended, its metrics, limits passed (0 or 1); returns where.
+
+    What was drawn is in SI; metrics are in the units of `campaign.store.UNITS`: tensions [N], times [s], θ_rms [deg].
+    """
     head = ["law", "case", *plan.sample.names, "outcome", "failed", *KEPT, *flags]
     return _written(folder / "flights.csv", head, _flights(plan, data, flags))
 

@@ -32,9 +32,9 @@ def plot_limits(found: Mapping[str, Mapping[str, Mapping[str, Any]]], confidence
     Parameters
     ----------
     found : mapping
-        Law → limit → `probability`, `low`, `high`, as in `answers["laws"][law]["exceedance"]`.
+        Law → limit → `probability`, `low`, `high` [-], as in `answers["laws"][law]["exceedance"]`.
     confidence : float
-        Of the intervals.
+        Of the intervals [-].
     axes : Axes or None
         Where to draw.
     """
@@ -112,7 +112,7 @@ def plot_times(times: Mapping[str, np.ndarray], limit: float | None, axes: Axes 
 def plot_convergence(
     settling: Mapping[str, Mapping[str, np.ndarray]], confidence: float, axes: Axes | None = None
 ) -> Axes:
-    """Draw how probabilities settle: limit → `probability.running`."""
+    """Draw how probabilities [-] settle: limit → `probability.running`; `confidence` is of the intervals [-]."""
     axes = new_axes(axes, 4.0)
     for i, (name, path) in enumerate(settling.items()):
         colour = COLOURS[i % len(COLOURS)]
@@ -128,7 +128,7 @@ def plot_convergence(
 
 
 def plot_importance(entries: Sequence[Mapping[str, Any]], axes: Axes | None = None) -> Axes:
-    """Draw rank correlations, and Sobol's total indices where the design gave them; entries from `Importance`."""
+    """Draw rank correlations [-], and Sobol's indices [-] where the design gave them; entries from `Importance`."""
     sobol = entries[0]["total"] is not None
     axes = new_axes(axes, 0.34 * len(entries) + 1.2)
     rows = np.arange(len(entries))
@@ -157,7 +157,7 @@ def plot_tail(peaks: np.ndarray, tail: Mapping[str, Any]) -> Figure:
     peaks : ndarray
         Peak of each flight [N].
     tail : mapping
-        From `answers.tail_data`.
+        From `answers.tail_data`, its tensions [N].
     """
     drawn = Figure(figsize=(9.0, 3.9), layout="constrained")
     left, right = drawn.subplots(1, 2)

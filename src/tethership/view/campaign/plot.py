@@ -27,9 +27,9 @@ def plot_campaign(campaign: Campaign, axes: Axes | None = None, kind: str = "lim
     axes : Axes, optional
         Draw there; new ones if not given.
     kind : str
-        `limits`: probability of exceeding each limit, with intervals. `peaks`: share of flights above a tension.
-        `times`: histogram of the time to dock. `convergence`: how one law's probabilities settle (independent draws
-        only). `importance`: what one law's peak tension hangs on.
+        `limits`: probability of exceeding each limit [%], with intervals. `peaks`: share of flights [%] above a tension
+        [N]. `times`: histogram of the time to dock [s]. `convergence`: how one law's probabilities [%] settle
+        (independent draws only). `importance`: what one law's peak tension hangs on [-].
     law : str, optional
         For `convergence` and `importance`: whose; the first if not given.
 

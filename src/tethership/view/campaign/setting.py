@@ -82,12 +82,12 @@ def compliance_section(answers: Mapping[str, Any]) -> Section | None:
 
 
 def interval(row: Mapping[str, Any]) -> str | None:
-    """Return an interval in words, None where there is none."""
+    """Return an interval of a probability [-] in words, four digits, None where there is none."""
     return None if row["low"] is None or row["high"] is None else f"{row['low']:.4g} … {row['high']:.4g}"
 
 
 def trusted(row: Mapping[str, Any]) -> str:
-    """Return what is to be said of a verdict on tension, nothing of another."""
+    """Return what is to be said of a verdict on tension, from its shares and probabilities [-], nothing of another."""
     if "quasi_static_outside" not in row:
         return ""
     return (
@@ -97,7 +97,7 @@ def trusted(row: Mapping[str, Any]) -> str:
 
 
 def numbered(value: tuple[float, str] | None) -> str:
-    """Return a limit's number with its unit."""
+    """Return a limit's number with its unit, as `limit_values` gives them: 2200 N for [N]."""
     return "" if value is None else f"{value[0]:g} {value[1]}"
 
 

@@ -19,7 +19,7 @@ def compass(azimuth: float) -> str:
 
 
 def percent(share: float | None) -> str:
-    """Return a share for people: in percent, to three digits of it or of what it lacks to the whole.
+    """Return a share [-] for people: in percent, to three digits of it or of what it lacks to the whole.
 
     Examples
     --------
@@ -34,14 +34,14 @@ def percent(share: float | None) -> str:
 
 
 def percents(row: Mapping[str, Any]) -> str:
-    """Return the interval of a share, `low` and `high` of a row, in percent."""
+    """Return the interval of a share, `low` and `high` [-] of a row, in percent."""
     if row["low"] is None or row["high"] is None:
         return "no interval"
     return f"{percent(row['low'])} … {percent(row['high'])}"
 
 
 def trust(outside: Mapping[str, Any]) -> str:
-    """Return how far tensions are to be trusted, from `quasi_static_outside` of a campaign's answers."""
+    """Return how far tensions are to be trusted, from shares [-]: `quasi_static_outside` of a campaign's answers."""
     return (
         f"the quasi-static cable is outside its trusted range in {percent(outside['median'])} of the flight in the "
         f"middle (at most {percent(outside['largest'])})"
@@ -49,7 +49,10 @@ def trust(outside: Mapping[str, Any]) -> str:
 
 
 def flown_words(config: ScenarioConfig, attributes: Mapping[str, Any]) -> list[str]:
-    """Return how a flight was flown, in a few parts: wind, gusts, layers, formulation; `attributes` are its own."""
+    """Return how a flight was flown, in a few parts; `attributes` are its own.
+
+    Wind [m/s] and the point of the compass it comes from, gusts with their start [s], layers, formulation.
+    """
     wind = config.wind
     layers = ", ".join(attributes["layers"]) or "none"
     return [

@@ -120,7 +120,15 @@ def _draw_limits(axes: Axes, names: list[str], limits: list[float]) -> None:
 
 
 def spread(places: Array, gap: float) -> Array:
-    """Return rising places moved apart as little as needed for a least gap, in the same unit."""
+    """Return rising places moved apart as little as needed for a least gap, in the same unit.
+
+    Parameters
+    ----------
+    places : Array
+        Any unit; labels have theirs over the axis' height [-]. Shape (n,).
+    gap : float
+        Least distance of neighbours, in that unit.
+    """
     moved = np.array(places, dtype=float)
     for _ in range(100):
         lack = np.clip(gap - np.diff(moved), 0.0, None)

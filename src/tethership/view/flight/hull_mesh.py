@@ -41,11 +41,16 @@ def ship_mesh(shape: ShipShape, rings: int = RINGS, sectors: int = SECTORS) -> M
     Parameters
     ----------
     shape : ShipShape
-        From `ship_shape`.
+        From `ship_shape` [m].
     rings : int
         Sections between nose and tail.
     sectors : int
         Corners of a section.
+
+    Returns
+    -------
+    Mesh
+        Corners in body axes from P [m]: the hull's sections from nose to tail, its two poles, then four of each fin.
     """
     chosen = np.linspace(0, len(shape.station) - 1, rings + 2).round().astype(int)
     station, radius = shape.station[chosen], shape.radius[chosen]

@@ -20,7 +20,7 @@ class View(NamedTuple):
     title : str
         What it is called.
     labels : tuple of str
-        Labels of the horizontal and the vertical axis.
+        Labels of the horizontal and the vertical axis, with their unit [m].
     plane : Array
         Rows are the unit vectors of the horizontal and the vertical axis, ground axes [-], shape (2, 3).
     toward : Array

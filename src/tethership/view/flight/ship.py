@@ -58,6 +58,11 @@ def ship_shape(vehicle: VehicleConfig) -> ShipShape:
     ----------
     vehicle : VehicleConfig
         A validated vehicle, P at the origin of its body axes.
+
+    Returns
+    -------
+    ShipShape
+        Body axes from P [m]; 161 sections, dense at nose and tail.
     """
     axis = np.asarray(vehicle.buoyancy.centre)
     station, radius = jax.device_get(_sections(build_hull(vehicle.hull)))

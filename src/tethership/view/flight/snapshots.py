@@ -59,7 +59,7 @@ class Snapshots:
     ground: float
 
     def values(self, name: str) -> Array:
-        """Return an output of the flight, by its name in `results.schema`."""
+        """Return an output of the flight by its name, in its unit of `results.schema`, e.g. a tension [N]."""
         return self.flight.data[name].to_numpy()
 
     @property
@@ -95,6 +95,11 @@ def take_snapshots(flight: Flight) -> Snapshots:
     ----------
     flight : Flight
         Flown or loaded.
+
+    Returns
+    -------
+    Snapshots
+        Samples nearest to every multiple of the interval [s], and the last; places in ground axes [m].
 
     Raises
     ------

@@ -39,7 +39,7 @@ def with_peaks(values: Array, buckets: int) -> NDArray[np.intp]:
     Parameters
     ----------
     values : Array
-        Shape (n, series).
+        Any unit (tensions [N] of a replay), shape (n, series).
     buckets : int
         Stretches; with fewer samples than twice that, all are kept.
     """

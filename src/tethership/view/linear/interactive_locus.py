@@ -41,6 +41,12 @@ def interactive_root_locus(found: Sweep, title: str = "Root locus", parameter: s
         Above the plot.
     parameter : str, optional
         Which parameter colours the dots; the first if not given.
+
+    Returns
+    -------
+    Figure
+        Re λ [1/s] across, Im λ [rad/s] up, all modes and beside them the slow ones; hovering tells parameter, λ and
+        mode.
     """
     name = colour_parameter(found, parameter)
     star = own_point(found)
@@ -48,7 +54,7 @@ def interactive_root_locus(found: Sweep, title: str = "Root locus", parameter: s
 
 
 def interactive_panels(panels: Sequence[Panel], title: str) -> go.Figure:
-    """Return root loci beside each other as a plotly figure."""
+    """Return root loci beside each other as a plotly figure, Re λ [1/s] across, Im λ [rad/s] up."""
     return _assembled(list(panels), title)
 
 

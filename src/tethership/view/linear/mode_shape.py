@@ -116,7 +116,7 @@ def plot_modes(model: LinearModel, name: str, axes: Axes | None = None, view: st
 
 
 def plot_all_modes(model: LinearModel) -> Figure:
-    """Draw every mode of a model that moves the ship; raises ConfigError as `plot_modes`.
+    """Draw every mode of a model that moves the ship, equal scales [m]; raises ConfigError as `plot_modes`.
 
     Returns a figure that is not shown and not saved.
     """
@@ -136,6 +136,18 @@ def plot_all_modes(model: LinearModel) -> Figure:
 
 def mode_motion(model: LinearModel, mode: Mode) -> Motion:
     """Return a mode's motion, scaled so that it can be seen.
+
+    Parameters
+    ----------
+    model : LinearModel
+        Made from a scenario.
+    mode : Mode
+        Of this model; its shape is in comparable units [m/s, m].
+
+    Returns
+    -------
+    Motion
+        Amplitudes of P in ground axes [m] and of φ, θ, ψ [rad].
 
     Raises
     ------

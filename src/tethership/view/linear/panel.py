@@ -22,7 +22,7 @@ class Panel(NamedTuple):
     free : Modes or None
         The untethered ship, drawn as circles.
     slow : bool
-        Show only the slow modes, as the paper's zooms do.
+        Show only the slow modes, |λ| < 0.4 [1/s], as the paper's zooms do.
     """
 
     title: str

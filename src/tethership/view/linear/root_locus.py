@@ -30,7 +30,20 @@ PANEL = (6.2, 5.2)
 
 
 def display(name: str, unit: str) -> tuple[str, str, float]:
-    """Return label, unit and factor with which a parameter is shown: degrees for angles, millimetres for diameters."""
+    """Return label, unit and factor with which a parameter is shown: degrees for angles, millimetres for diameters.
+
+    Parameters
+    ----------
+    name : str
+        Dotted name.
+    unit : str
+        Its SI unit; "1" is shown as none.
+
+    Returns
+    -------
+    tuple of str, str, float
+        The factor is in the unit shown per SI unit: 180/π [°/rad] of angles, 1000 [mm/m] of a cable's diameter, else 1.
+    """
     *path, last = name.replace("cables.*.", "cables.").replace("cables.", "cable ").replace("vehicle.", "").split(".")
     if path and path[-1] in ("tether_point", "position", "centre", "centre_of_gravity") and last in "012":
         last = ("forward", "starboard", "down")[int(last)]
@@ -78,7 +91,12 @@ def plot_root_locus(
     free : Modes, optional
         Drawn as circles: the untethered ship.
     slow : bool
-        Show only |λ| < 0.4 1/s.
+        Show only |λ| < 0.4 [1/s].
+
+    Returns
+    -------
+    Axes
+        Re λ [1/s] across, Im λ [rad/s] up; not shown and not saved.
     """
     if axes is None:
         axes = Figure(figsize=PANEL, layout="constrained").subplots()
@@ -110,7 +128,7 @@ def plot_root_locus(
 
 
 def plot_root_loci(found: Sweep) -> Figure:
-    """Draw a sweep twice: all modes, and the slow ones; the scenario's own values are the reference.
+    """Draw a sweep twice, all modes and the slow ones, |λ| < 0.4 [1/s]; the scenario's own values are the reference.
 
     Returns a figure that is not shown and not saved.
     """
@@ -138,7 +156,10 @@ def own_point(found: Sweep) -> int | None:
 
 
 def plot_panels(panels: Sequence[Panel], title: str) -> Figure:
-    """Draw root loci beside each other; returns a figure that is not shown and not saved."""
+    """Draw root loci beside each other, Re λ [1/s] across, Im λ [rad/s] up.
+
+    Returns a figure that is not shown and not saved.
+    """
     count = len(panels)
     drawn = Figure(figsize=(PANEL[0] * count, PANEL[1]), layout="constrained")
     drawn.suptitle(title, fontsize=style.FONT + 2, color=style.INK)

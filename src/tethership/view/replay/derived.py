@@ -36,7 +36,7 @@ def rotations(attitude: Array) -> Rotation:
 
 
 def quaternions(turned: Rotation) -> Array:
-    """Return rotations as unit quaternions (x, y, z, w) whose signs do not jump from one to the next, shape (n, 4)."""
+    """Return rotations as unit quaternions (x, y, z, w) [-], shape (n, 4), without jumps of sign between neighbours."""
     unit = turned.as_quat()
     flips = np.where(np.einsum("ni,ni->n", unit[1:], unit[:-1]) < 0.0, -1.0, 1.0)
     return unit * np.concatenate([[1.0], np.cumprod(flips)])[:, None]

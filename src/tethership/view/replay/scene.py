@@ -26,7 +26,8 @@ SHOWN = (*COPIED, "gust", "thrust")
 def scene(flight: Flight, name: str) -> dict[str, Any]:
     """Return what a replay needs to know of a flight, as JSON can hold it.
 
-    Lengths in m, body axes from P for parts of the ship, ground axes (north, east, down) for the rest; forces in N.
+    Lengths [m], body axes from P for parts of the ship, ground axes (north, east, down) for the rest; forces [N], times
+    [s]. `ground` is the ground's position down [m].
 
     Parameters
     ----------

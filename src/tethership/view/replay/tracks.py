@@ -91,7 +91,7 @@ def tracks(data: xr.Dataset, config: ScenarioConfig) -> dict[str, Array]:
 
 
 def chosen(data: xr.Dataset) -> NDArray[np.intp]:
-    """Return the samples of a flight to keep: evenly in time, and the peaks of every cable's tension."""
+    """Return the samples of a flight to keep: evenly in time [s], and the peaks of every cable's tension [N]."""
     time = data["time"].to_numpy()
     numbers = DERIVED + sum(data[name][0].size for name in COPIED if name in data)
     most = int(BUDGET / (NUMBER * numbers))

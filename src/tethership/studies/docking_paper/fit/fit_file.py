@@ -22,7 +22,11 @@ FORMULATIONS = ("published", "consistent")
 
 
 def fit_document(found: Identification, scenario_name: str, seed: int, budget: Budget) -> dict[str, Any]:
-    """Return a fit as plain data: parameters, spread, correlations, misfits, members of the set."""
+    """Return a fit as plain data: parameters, spread, correlations, misfits, members of the set.
+
+    Parameters, bounds, spread and members are in the SI units under `units`; misfits, correlations and residuals (in
+    tolerances) are without unit [-]; winds are in [m/s], the wall time in [s].
+    """
     low, middle, high = np.percentile(found.members, [5.0, 50.0, 95.0], axis=0)
     count = len(found.items)
     return {

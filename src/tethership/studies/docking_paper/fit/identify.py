@@ -57,17 +57,17 @@ class Identification(NamedTuple):
     ----------
     formulation : str
     values : ndarray
-        The best vector [SI], in the order of `UNKNOWNS`.
+        The best vector in SI [m², m, -, N], in the order of `UNKNOWNS`.
     misfit : float
         Its misfit, tables and spectrum [-].
     tables_misfit : float
-        Of the tables alone.
+        Of the tables alone [-].
     residuals : ndarray
-        Its residuals in tolerances, tables first.
+        Its residuals in tolerances [-], tables first, then the four of the spectrum.
     items : tuple of Item
         What was fitted, with the tolerances used.
     nudged : ndarray
-        Median |Δ ln| of each number under 1 % of initial attitude.
+        Median |Δ ln| of each number under 1 % of initial attitude [-].
     members : ndarray
         Vectors [SI] that fit within 10 % of the best, shape (members, unknowns).
     left_out : dict
@@ -75,7 +75,7 @@ class Identification(NamedTuple):
     vectors : int
         Vectors looked at.
     seconds : float
-        Wall time.
+        Wall time [s].
     """
 
     formulation: str
@@ -92,7 +92,7 @@ class Identification(NamedTuple):
 
 
 class Objective:
-    """Residuals of tables and spectrum for places between the bounds."""
+    """Residuals of tables and spectrum, in tolerances [-], for places between the bounds, 0 … 1 [-]."""
 
     def __init__(self, scenario: Scenario, rows: Sequence[Row], what: Sequence[Item], spectrum: Spectrum) -> None:
         self.scenario, self.rows, self.what, self.spectrum = scenario, rows, what, spectrum
@@ -104,7 +104,7 @@ class Objective:
         return np.concatenate([tables, self.spectrum.residuals(values)], axis=1)
 
     def slopes(self) -> Slopes:
-        """Return the exact derivatives of the spectrum's residuals with respect to the places."""
+        """Return the exact derivatives of the spectrum's residuals with respect to the places [-]: four rows."""
 
         def function(place: np.ndarray) -> np.ndarray:
             step = 1e-6
@@ -116,7 +116,19 @@ class Objective:
 
 
 def nudged(scenario: Scenario, values: np.ndarray, rows: Sequence[Row], what: Sequence[Item]) -> np.ndarray:
-    """Return the median |Δ ln| of each fitted number under 1 % of initial attitude, over vectors [SI]."""
+    """Return the median |Δ ln| [-] of each fitted number under 1 % of initial attitude, over vectors [SI].
+
+    Parameters
+    ----------
+    scenario : Scenario
+        With the paper's initial attitude [rad].
+    values : ndarray
+        Unknowns in SI [m², m, -, N], shape (vectors, unknowns).
+    rows : sequence of Row
+        Winds and layers to be flown.
+    what : sequence of Item
+        What is fitted.
+    """
     offset = scenario.config.start.attitude_offset
     names = [f"start.attitude_offset.{i}" for i in range(3)]
     found = []
@@ -128,7 +140,7 @@ def nudged(scenario: Scenario, values: np.ndarray, rows: Sequence[Row], what: Se
 
 
 def widened(what: Sequence[Item], moved: np.ndarray) -> tuple[Item, ...]:
-    """Return the items with tolerances √(tolerance² + Δ²), so that what is chaotic counts little."""
+    """Return the items with tolerances √(tolerance² + Δ²) [-], so that what is chaotic counts little."""
     pairs = zip(what, moved, strict=True)
     return tuple(item._replace(tolerance=float(np.hypot(item.tolerance, shift))) for item, shift in pairs)
 
@@ -159,6 +171,11 @@ def identify(
         Of everything random: the same seed gives the same answer.
     progress : callable, optional
         See `Progress`.
+
+    Returns
+    -------
+    Identification
+        The best vector and all that fit nearly as well, in SI [m², m, -, N]; misfits [-].
     """
     budget = budget or Budget()
     begun = time.perf_counter()
@@ -248,6 +265,14 @@ def _without(
 
 
 def at_bounds(values: np.ndarray, margin: float = 0.02) -> list[str]:
-    """Return the names of unknowns whose value lies within a share of the bounds' width from a bound."""
+    """Return the names of unknowns whose value lies within a share of the bounds' width from a bound.
+
+    Parameters
+    ----------
+    values : ndarray
+        In SI [m², m, -, N], shape (unknowns,).
+    margin : float
+        That share [-], of the width of the logarithm where an unknown is searched in it.
+    """
     shares = to_shares(values)
     return [u.name for u, share in zip(UNKNOWNS, shares, strict=True) if share < margin or share > 1.0 - margin]

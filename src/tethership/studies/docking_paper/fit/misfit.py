@@ -57,6 +57,7 @@ class Item(NamedTuple):
     metric : str
         With the threshold's place for times, `seconds_above.0`.
     published : float
+        In the metric's unit: a tension [N], ADC [1/s], E [-], θ_rms [deg], a time [s].
     tolerance : float
         Of the logarithm [-].
     """
@@ -69,7 +70,13 @@ class Item(NamedTuple):
 
 
 def items(rows: Sequence[Row] | None = None) -> tuple[Item, ...]:
-    """Return all numbers that are fitted, row by row; raises ConfigError for a row that is held out."""
+    """Return all numbers that are fitted, row by row, with their tolerances [-].
+
+    Raises
+    ------
+    ConfigError
+        A row is held out.
+    """
     found = []
     for row in fitted_rows(rows):
         for metric, tolerance in TOLERANCES.items():
@@ -94,11 +101,11 @@ def fly_rows(
     scenario : Scenario
         Docking; its gains are the paper's.
     values : ndarray
-        Unknowns [SI], shape (vectors, unknowns).
+        Unknowns in SI [m², m, -, N], shape (vectors, unknowns).
     rows : sequence of Row
         Winds and layers to be flown.
     more : mapping, optional
-        Further columns, by dotted name.
+        Further columns, by dotted name [SI].
 
     Notes
     -----
@@ -107,7 +114,7 @@ def fly_rows(
     Returns
     -------
     list of dict
-        One per row, arrays with the vector first.
+        One per row, arrays with the vector first: tensions [N], times [s], angles [deg], ADC [1/s], E [-].
 
     Raises
     ------
@@ -123,7 +130,7 @@ def fly_rows(
 
 
 def residuals(flown: Sequence[dict[str, np.ndarray]], rows: Sequence[Row], what: Sequence[Item]) -> np.ndarray:
-    """Return residuals in tolerances, shape (vectors, items).
+    """Return residuals ln(computed/published)/tolerance [-], shape (vectors, items).
 
     Parameters
     ----------
@@ -133,6 +140,11 @@ def residuals(flown: Sequence[dict[str, np.ndarray]], rows: Sequence[Row], what:
         The same rows.
     what : sequence of Item
         What is fitted.
+
+    Notes
+    -----
+    To a time over a threshold, and to its published value, `SECONDS` [s] are added. A flight that did not go on to its
+    end has `FAILED`.
     """
     place = {(row.table, row.wind): i for i, row in enumerate(rows)}
     columns = []

@@ -25,7 +25,7 @@ class Unknown(NamedTuple):
     unit : str
         SI unit.
     low, high : float
-        Bounds [SI].
+        Bounds, in that unit: [m²], [m], [-] or [N].
     logarithmic : bool
         Searched in its logarithm.
     source : str
@@ -119,7 +119,11 @@ UNKNOWNS = (
 
 
 def to_values(shares: np.ndarray, unknowns: tuple[Unknown, ...] = UNKNOWNS) -> np.ndarray:
-    """Return values [SI] for places between the bounds, 0 … 1, last axis the unknown."""
+    """Return values for places between the bounds, 0 … 1 [-], last axis the unknown.
+
+    They are in the unknowns' SI units, of `UNKNOWNS` [m², m, -, N]: low + p (high − low), or low (high/low)^p of one
+    that is searched in its logarithm.
+    """
     low = np.array([u.low for u in unknowns])
     high = np.array([u.high for u in unknowns])
     logarithmic = np.array([u.logarithmic for u in unknowns])
@@ -128,7 +132,7 @@ def to_values(shares: np.ndarray, unknowns: tuple[Unknown, ...] = UNKNOWNS) -> n
 
 
 def to_shares(values: np.ndarray, unknowns: tuple[Unknown, ...] = UNKNOWNS) -> np.ndarray:
-    """Return the places between the bounds, 0 … 1, of values [SI]: the inverse of `to_values`."""
+    """Return the places between the bounds, 0 … 1 [-], of values [m², m, -, N]: the inverse of `to_values`."""
     low = np.array([u.low for u in unknowns])
     high = np.array([u.high for u in unknowns])
     logarithmic = np.array([u.logarithmic for u in unknowns])
@@ -138,5 +142,8 @@ def to_shares(values: np.ndarray, unknowns: tuple[Unknown, ...] = UNKNOWNS) -> n
 
 
 def named_values(values: np.ndarray, unknowns: tuple[Unknown, ...] = UNKNOWNS) -> dict[str, np.ndarray]:
-    """Return columns by dotted name for values of shape (vectors, unknowns): what `Cases.with_columns` takes."""
+    """Return columns by dotted name for values [m², m, -, N] of shape (vectors, unknowns).
+
+    They are what `Cases.with_columns` takes, shape (vectors,) each; an unknown that sets several numbers has as many.
+    """
     return {key: values[..., i] for i, unknown in enumerate(unknowns) for key in unknown.parameters}

@@ -102,7 +102,7 @@ def _eigenvalue_slope(
 
 
 class Spectrum:
-    """The free ship at 6 m/s as a function of the unknowns.
+    """The free ship at 6 m/s as a function of the unknowns: growth rates [1/s] against what L1 and L2 say of them.
 
     Parameters
     ----------
@@ -124,7 +124,13 @@ class Spectrum:
         return np.stack([columns[name] for name in self.names], axis=-1)
 
     def residuals(self, values: np.ndarray) -> np.ndarray:
-        """Return the residuals of `PARTS` [tolerances] for values [SI], shape (vectors, unknowns) → (vectors, 4)."""
+        """Return the residuals of `PARTS` in tolerances of `GROWTH` [-], shape (vectors, 4).
+
+        Parameters
+        ----------
+        values : ndarray
+            Unknowns in SI [m², m, -, N], shape (vectors, unknowns).
+        """
         size = -(-len(values) // 128) * 128
         padded = np.concatenate([values, np.repeat(values[-1:], size - len(values), axis=0)])
         found = [
@@ -134,7 +140,15 @@ class Spectrum:
         return np.concatenate([np.asarray(part) for part in found])[: len(values)]
 
     def slopes(self, values: np.ndarray) -> np.ndarray:
-        """Return the exact derivative of the residuals with respect to the unknowns [1/SI], shape (4, unknowns)."""
+        """Return the exact derivative of the residuals with respect to the unknowns, shape (4, unknowns).
+
+        It is in tolerances per unit of each unknown: [1/m²], [1/m], [-] or [1/N]; zero where a residual is.
+
+        Parameters
+        ----------
+        values : ndarray
+            Unknowns in SI [m², m, -, N], shape (unknowns,).
+        """
         columns = named_values(values)
         scenario = scenario_at(self._scenario, {name: float(value) for name, value in columns.items()})
         known = list_parameters(scenario.config)
@@ -156,5 +170,5 @@ class Spectrum:
 
 
 def unmet(residual: Sequence[float]) -> list[str]:
-    """Return the parts of L1 and L2 that do not hold, from one vector's residuals."""
+    """Return the parts of L1 and L2 that do not hold, from one vector's residuals in tolerances [-], shape (4,)."""
     return [part for part, value in zip(PARTS, residual, strict=True) if value > 0]

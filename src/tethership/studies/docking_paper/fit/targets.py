@@ -26,7 +26,7 @@ class Row(NamedTuple):
     wind : float
         [m/s].
     values : dict
-        Metrics by the names of `results.docking_metrics`, `docking_time` [s] included; SI, θ_rms in degrees.
+        Metrics by the names of `results.docking_metrics`, `docking_time` [s] included; SI, θ_rms in degrees [deg].
     held_out : bool
         Whether it judges predictions and is not to be fitted.
     """
@@ -44,7 +44,10 @@ class Row(NamedTuple):
 
 @functools.cache
 def published_rows() -> tuple[Row, ...]:
-    """Return all published rows, Tables 3–5 with their part of Table 6: for comparison, never for a fit."""
+    """Return all published rows, Tables 3–5 with their part of Table 6: for comparison, never for a fit.
+
+    Their metrics are in the units of print: tensions [N], rates [m/s], times [s], ADC [1/s], E [-], θ_rms [deg].
+    """
     text = resources.files("tethership").joinpath("data/paper/published.toml").read_text(encoding="utf-8")
     document = tomllib.loads(text)
     rows = []

@@ -74,7 +74,10 @@ Progress = Callable[[str, float], None]
 
 
 def refit_all(scenario: Scenario, fit: dict[str, Any], progress: Progress | None = None) -> dict[str, dict[str, Any]]:
-    """Return the vector fitted to every variant, and to none, as plain data by the variant's name."""
+    """Return the vector fitted to every variant, and to none, as plain data by the variant's name.
+
+    `values` are in SI, in the order of `UNKNOWNS` [m², m, -, N]; `misfit` is that to the tables [-].
+    """
     found: dict[str, dict[str, Any]] = {}
     everything = (AS_IDENTIFIED, *VARIANTS)
     for done, variant in enumerate(everything):
@@ -89,13 +92,13 @@ def refit_all(scenario: Scenario, fit: dict[str, Any], progress: Progress | None
 
 
 def fitted_items(fit: dict[str, Any]) -> tuple[Item, ...]:
-    """Return what a stored fit fitted, with its tolerances."""
+    """Return what a stored fit fitted, with its tolerances of the logarithm [-]."""
     tolerance = {(entry["table"], entry["wind"], entry["metric"]): entry["tolerance"] for entry in fit["items"]}
     return tuple(item._replace(tolerance=tolerance[item.table, item.wind, item.metric]) for item in items())
 
 
 def objective(scenario: Scenario, fit: dict[str, Any]) -> Objective:
-    """Return the residuals of a scenario, in the tolerances of a stored fit, as a function of places in the box."""
+    """Return the residuals of a scenario, in the tolerances of a fit [-], as a function of places in the box, 0 … 1."""
     return Objective(scenario, fitted_rows(), fitted_items(fit), Spectrum(scenario.formulation))
 
 
@@ -107,7 +110,7 @@ def refit(
     generations: int = 8,
     seed: int = 1,
 ) -> np.ndarray:
-    """Return the best vector [SI] of a variant, searched from the identified set.
+    """Return the best vector of a variant, in SI [m², m, -, N], searched from the identified set.
 
     Parameters
     ----------
@@ -132,7 +135,19 @@ def refit(
 
 
 def table_misfits(scenario: Scenario, fit: dict[str, Any], variant: Variant | None, values: np.ndarray) -> np.ndarray:
-    """Return the misfits to the tables of vectors [SI], in the tolerances of a fit, with or without a variant."""
+    """Return the misfits to the tables [-] of vectors, in the tolerances of a fit, with or without a variant.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What was fitted.
+    fit : dict
+        From `fit_document`.
+    variant : Variant or None
+        What is otherwise.
+    values : ndarray
+        Unknowns in SI [m², m, -, N], shape (vectors, unknowns) or (unknowns,).
+    """
     here = scenario if variant is None else scenario.changed(variant.changes)
     rows = fitted_rows()
     return misfit(residuals(fly_rows(here, np.atleast_2d(values), rows), rows, fitted_items(fit)))

@@ -21,7 +21,7 @@ def vehicle_text(template: str, values: np.ndarray, name: str, description: str,
     template : str
         Text of the vehicle whose other numbers stay.
     values : ndarray
-        Of `UNKNOWNS` [SI].
+        Of `UNKNOWNS`, in the SI unit that each has [m², m, -, N], shape (unknowns,).
     name, description : str
         Of the new vehicle.
     source : str

@@ -26,7 +26,7 @@ LEFT, TOP, BOTTOM, PANEL = 0.075, 1.3, 0.5, 1.35
 
 
 def plot_breakdown(flight: Flight, figure: Figure | None = None) -> Figure:
-    """Draw the size of each load over time: forces on the left, moments on the right, one row per load.
+    """Draw the size of each load over time [s]: forces [N] on the left, moments [N m] on the right, one row per load.
 
     All axes of a column have one logarithmic scale, and each shows the other loads in grey. Weight and buoyancy nearly
     cancel and are drawn as one load. A vertical line marks the largest tension; gusts are shaded.

@@ -60,7 +60,8 @@ def plot_comparison(flights: Mapping[str, Flight], title: str = "Trajectories co
     Returns
     -------
     Figure
-        Not shown and not saved: ``plot_comparison(flights).savefig("comparison.png", dpi=150)``.
+        All views on one scale of east, north and altitude [m]; not shown and not saved:
+        ``plot_comparison(flights).savefig("comparison.png", dpi=150)``.
 
     Raises
     ------

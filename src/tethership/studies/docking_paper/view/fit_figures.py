@@ -16,7 +16,7 @@ def _words(name: str) -> str:
 
 
 def plot_marginals(fit: dict[str, Any]) -> Figure:
-    """Draw where every unknown lies between its bounds: the best vector, and 5–95 % of all that fit nearly as well."""
+    """Draw where every unknown lies between its bounds, 0 … 1 [-]: the best vector, and 5–95 % of the set."""
     members = to_shares(np.array(fit["members"]))
     best = to_shares(np.array(list(fit["parameters"].values())))
     drawn = Figure(figsize=(8.0, 0.42 * len(UNKNOWNS) + 1.2), layout="constrained")
@@ -45,7 +45,7 @@ def plot_marginals(fit: dict[str, Any]) -> Figure:
 
 
 def plot_correlation(fit: dict[str, Any]) -> Figure:
-    """Draw how the unknowns go together over the set that fits nearly as well."""
+    """Draw how the unknowns go together over the set that fits nearly as well: correlations [-]."""
     matrix = np.array(fit["correlation"])
     names = [_words(u.name) for u in UNKNOWNS]
     drawn = Figure(figsize=(7.2, 6.4), layout="constrained")
@@ -64,7 +64,7 @@ def plot_correlation(fit: dict[str, Any]) -> Figure:
 
 
 def plot_residuals(fit: dict[str, Any]) -> Figure:
-    """Draw computed over published of every fitted number, by table and wind."""
+    """Draw computed over published [-] of every fitted number, by table and wind [m/s]."""
     metrics = list(dict.fromkeys(entry["metric"] for entry in fit["items"]))
     drawn = Figure(figsize=(8.4, 3.6), layout="constrained")
     axes = drawn.subplots()

@@ -12,13 +12,16 @@ if TYPE_CHECKING:
 
 
 def plot_linear_figure(figure: LinearFigure) -> Figure:
-    """Draw one of Figures 6–11 of the paper; returns a figure that is not shown and not saved."""
+    """Draw one of Figures 6–11 of the paper, Re λ [1/s] across, Im λ [rad/s] up.
+
+    Returns a figure that is not shown and not saved.
+    """
     title = f"Figure {figure.number} of the paper, computed: {figure.title}\n{figure.formulation} formulation"
     return plot_panels(figure.panels, title)
 
 
 def interactive_linear_figure(figure: LinearFigure) -> "go.Figure":
-    """Return one of Figures 6–11 of the paper as a plotly figure."""
+    """Return one of Figures 6–11 of the paper as a plotly figure, Re λ [1/s] across, Im λ [rad/s] up."""
     from tethership.view.linear.interactive_locus import interactive_panels
 
     title = f"Figure {figure.number} of the paper, computed: {figure.title} · {figure.formulation} formulation"

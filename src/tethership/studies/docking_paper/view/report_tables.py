@@ -24,7 +24,10 @@ Rows = Sequence[Mapping[str, Any]]
 
 
 def comparison(name: str, rows: Rows, intervals: Mapping[tuple[str, float, str], Mapping[str, Any]]) -> Table:
-    """Return one of Tables 3–6: published beside computed, with the interval of the identified set."""
+    """Return one of Tables 3–6: published beside computed, with the interval of the identified set.
+
+    Numbers are in the unit that stands beside the quantity's name; wind [m/s], ratio [-].
+    """
     cells = []
     for row in rows:
         interval = intervals.get((row["layers"], row["wind"], row["metric"]))
@@ -58,7 +61,7 @@ def claims_table(claims: Mapping[str, Mapping[str, Any]], caption: str, label: s
 
 
 def parameter_table(fit: Mapping[str, Any]) -> Table:
-    """Return the identified numbers with their spread and bounds."""
+    """Return the identified numbers with their spread and bounds, in the units of the fit [m², m, -, N]."""
     cells = []
     for name, value in fit["parameters"].items():
         low, middle, high = fit["spread"][name]
@@ -74,7 +77,7 @@ def parameter_table(fit: Mapping[str, Any]) -> Table:
 
 
 def left_out_table(fit: Mapping[str, Any]) -> Table | None:
-    """Return what fits without one table say of it."""
+    """Return what fits without one table say of it: misfits [-]."""
     if not fit["left_out"]:
         return None
     cells = [
@@ -89,7 +92,7 @@ SAME = 0.05
 
 
 def variant_table(part: Mapping[str, Any]) -> Table:
-    """Return the misfit with and without each reading; the first row is no variant."""
+    """Return the misfit [-] with and without each reading; the first row is no variant."""
     base = _best(part["variants"][0])
     cells: list[list[Any]] = []
     for row in part["variants"]:
@@ -110,7 +113,7 @@ def _best(row: Mapping[str, Any]) -> float:
 
 
 def uncertainty_table(rows: Rows, wind: float) -> Table:
-    """Return the interval of every cell at one wind."""
+    """Return the interval of every cell at one wind [m/s], each in the unit beside its name; cables broken [%]."""
     cells = []
     for row in rows:
         if row["wind"] != wind:
@@ -124,7 +127,7 @@ def uncertainty_table(rows: Rows, wind: float) -> Table:
 
 
 def terms_table(rows: Rows, layers: str) -> Table:
-    """Return what the peak tension becomes without each term."""
+    """Return what the peak tension [N] becomes without each term; times [s], θ_rms [deg]."""
     cells = [
         [
             row["term"].replace("_", " "),
@@ -146,7 +149,7 @@ def terms_table(rows: Rows, layers: str) -> Table:
 
 
 def breakdown_table(found: Mapping[str, Any]) -> Table:
-    """Return how large each load is, by layer."""
+    """Return how large each load is, by layer: forces [N], moments about P [N m]."""
     names = [name for name in next(iter(found.values()))["force"] if name not in ("gravity", "buoyancy")]
     cells: list[list[Any]] = []
     for name in names:
@@ -162,7 +165,7 @@ def breakdown_table(found: Mapping[str, Any]) -> Table:
 
 
 def retuned_table(rows: Rows) -> Table:
-    """Return retuned gains beside the paper's."""
+    """Return retuned gains beside the paper's: tensions [N], times [s], ADC [1/s], E [-], θ_rms [deg], shares [%]."""
     cells = [
         [
             row["name"],
@@ -207,7 +210,7 @@ def misprint_table(rows: Sequence[Any]) -> Table:
 
 
 def line_table(cases: Mapping[str, Mapping[str, Any]]) -> Table:
-    """Return the quasi-static cable beside the dynamic line."""
+    """Return the quasi-static cable beside the dynamic line: tensions [N], delay [ms], time outside the range [%]."""
     cells = [
         [
             case["title"],
