@@ -17,7 +17,8 @@ from pathlib import Path
 
 import pytest
 from sybil import Example, Sybil
-from sybil.parsers.myst import CodeBlockParser, PythonCodeBlockParser, SkipParser
+from sybil.evaluators.python import PythonEvaluator
+from sybil.parsers.myst import CodeBlockParser, SkipParser
 from sybil.parsers.rest import DocTestParser
 
 import tethership as ts
@@ -64,6 +65,15 @@ def tethership(words: list[str]) -> int:
     return 0
 
 
+def run_python(example: Example) -> None:
+    """Run a block of Python, or write one whose first line names a file, `# mine.py`, for what comes after it."""
+    named = re.match(r"# (\w+\.py)$", example.parsed.splitlines()[0])
+    if named:
+        Path(named[1]).write_text(example.parsed, encoding="utf-8")
+    else:
+        PYTHON(example)
+
+
 def lay_file(example: Example) -> None:
     """Write a block of TOML whose first line names a file, `# mine.toml`, for the commands after it."""
     named = re.match(r"# (\w+\.toml)$", example.parsed.splitlines()[0])
@@ -73,9 +83,11 @@ def lay_file(example: Example) -> None:
         tomllib.loads(example.parsed)
 
 
+PYTHON = PythonEvaluator()
+
 MARKDOWN = Sybil(
     parsers=[
-        PythonCodeBlockParser(),
+        CodeBlockParser("python", run_python),
         CodeBlockParser("sh", run_commands),
         CodeBlockParser("toml", lay_file),
         SkipParser(),
