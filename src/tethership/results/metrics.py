@@ -1,6 +1,10 @@
-"""Metrics of a docking flight, with the definitions of Tables 3–6 of Riboldi et al. Depends on numpy only."""
+"""Metrics of a docking flight, with the definitions of Tables 3–6 of Riboldi et al. Depends on numpy only.
 
-from typing import Any
+Each is defined once, for arrays of NumPy and of JAX: a single flight reads them off its samples, a batch
+(`simulation.tally`) sums them up step by step while it flies.
+"""
+
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +47,90 @@ def refined(time: Array, value: Array) -> tuple[Array, Array]:
     return np.append(times.ravel(), time[-1]), np.append(between.ravel(), value[-1])
 
 
+def share_above(start: Any, end: Any, limit: Any) -> Any:
+    """Return the share of a step [-], 0 … 1, for which a straight line from `start` to `end` is above a limit.
+
+    Parameters
+    ----------
+    start, end, limit : Array
+        Of NumPy or JAX, the same unit each; shapes that broadcast.
+    """
+    over, later = start - limit, end - limit
+    xp = over.__array_namespace__()
+    crossing = xp.clip(-over / xp.where(later == over, 1.0, later - over), 0.0, 1.0)
+    one_sided = xp.where(over > 0, crossing, xp.where(later > 0, 1.0 - crossing, 0.0))
+    return xp.where((over > 0) & (later > 0), 1.0, one_sided)
+
+
+def jumped(before: Any, after: Any) -> Any:
+    """Return whether the misalignment χ [rad] jumps by more than a right angle between two samples.
+
+    Notes
+    -----
+    By π when the tether point passes over the anchor, by 2π when the anchor is astern and passes from port to
+    starboard: either way a law proportional to χ turns its thrust about.
+    """
+    return abs(after - before) > 0.5 * np.pi
+
+
+class Sums(NamedTuple):
+    """Integrals over a flight, or what is integrated at one time: the same four everywhere.
+
+    Attributes
+    ----------
+    tension : Array
+        ∫|F| dt of the cable that pulls hardest [N s], or |F| [N].
+    effort : Array
+        Σ_i ∫|δ_i| dt [s], or Σ_i |δ_i| [-].
+    pitch : Array
+        ∫θ² dt [rad² s], or θ² [rad²].
+    saturated : Array
+        Time for which a thruster or fin is asked for more than it has [s], or 1 where it is.
+    """
+
+    tension: Any
+    effort: Any
+    pitch: Any
+    saturated: Any
+
+
+def integrands(tension: Any, throttle: Any, pitch: Any, saturated: Any) -> Sums:
+    """Return what is integrated, from |F| [N], δ [-] with the thrusters last, θ [rad] and saturation (0 or 1)."""
+    return Sums(tension, abs(throttle).sum(axis=-1), pitch**2, saturated)
+
+
+def travelled(before: Any, after: Any) -> Any:
+    """Return Σ_i |Δδ_i| [-] between two samples of the throttles, thrusters last."""
+    return abs(after - before).sum(axis=-1)
+
+
+def averages(sums: Sums, travel: Any, span: Any) -> dict[str, Any]:
+    """Return the metrics that are averages over a flight.
+
+    Parameters
+    ----------
+    sums : Sums
+        Its integrals.
+    travel : Array
+        Σ_i ∫|dδ_i/dt| dt [-].
+    span : Array
+        t_f − t_0 above zero [s].
+
+    Returns
+    -------
+    dict
+        Mean tension [N]; ADC = Σ_i 1/(t_f − t_0) ∫|dδ_i/dt| dt [1/s], the total variation of the samples;
+        E = Σ_i 1/(t_f − t_0) ∫|δ_i| dt [-]; θ_rms [deg]; time saturated [s].
+    """
+    return {
+        "tension_mean": sums.tension / span,
+        "ADC": travel / span,
+        "E": sums.effort / span,
+        "theta_rms": np.degrees(np.sqrt(sums.pitch / span)),
+        "saturated_seconds": sums.saturated,
+    }
+
+
 def seconds_above(time: Array, value: Array, threshold: float) -> float:
     """Return for how long [s] a signal is above a threshold, straight lines between samples.
 
@@ -53,14 +141,7 @@ def seconds_above(time: Array, value: Array, threshold: float) -> float:
     >>> seconds_above(np.array([0.0, 1.0, 2.0]), np.array([0.0, 2.0, 0.0]), 1.0)
     1.0
     """
-    over = value - threshold
-    start, end, step = over[:-1], over[1:], np.diff(time)
-    change = np.where(end == start, 1.0, end - start)
-    crossing = np.clip(-start / change, 0.0, 1.0)
-    share = np.where(
-        (start > 0) & (end > 0), 1.0, np.where(start > 0, crossing, np.where(end > 0, 1.0 - crossing, 0.0))
-    )
-    return float(np.sum(share * step))
+    return float(np.sum(np.diff(time) * share_above(value[:-1], value[1:], threshold)))
 
 
 def mean(time: Array, value: Array) -> float:
@@ -69,43 +150,29 @@ def mean(time: Array, value: Array) -> float:
     return float(np.trapezoid(value, time) / span) if span > 0 else float(value[0])
 
 
-def duty_cycle(time: Array, throttle: Array) -> float:
-    """Return ADC = Σ_i 1/(t_f − t_0) ∫|dδ_i/dt| dt [1/s], as the total variation of the samples.
-
-    Parameters
-    ----------
-    time : Array
-        [s], shape (n,).
-    throttle : Array
-        δ [-], shape (n, thrusters).
-    """
-    span = time[-1] - time[0]
-    return float(np.abs(np.diff(throttle, axis=0)).sum() / span) if span > 0 else 0.0
-
-
-def control_energy(time: Array, throttle: Array) -> float:
-    """Return E = Σ_i 1/(t_f − t_0) ∫|δ_i| dt [-]; arguments as in `duty_cycle`."""
-    return sum(mean(time, np.abs(column)) for column in throttle.T)
-
-
-def jumps(angle: Array) -> int:
-    """Return how often the misalignment χ jumps by more than a right angle between samples.
-
-    Notes
-    -----
-    By π when the tether point passes over the anchor, by 2π when the anchor is astern and passes from port to
-    starboard: either way a law proportional to χ turns its thrust about.
-    """
-    return int(np.sum(np.abs(np.diff(angle)) > 0.5 * np.pi))
+def _saturated(flight: Any) -> Array:
+    """Return 1 where a thruster or a fin is asked for more than it has, else 0, shape (time,)."""
+    asked = [np.asarray(flight[name]) for name in ("saturated", "deflection_saturated") if name in flight]
+    if not asked:
+        return np.zeros(len(flight["time"]))
+    return np.concatenate(asked, axis=1).max(axis=1, initial=0.0)
 
 
 def saturated_seconds(flight: Any) -> float:
     """Return for how long [s] a thruster or a fin was asked for more than it has; `flight` has the outputs by name."""
-    asked = [np.asarray(flight[name]) for name in ("saturated", "deflection_saturated") if name in flight]
     time = np.asarray(flight["time"])
-    if not asked or not len(time):
-        return 0.0
-    return float(mean(time, np.concatenate(asked, axis=1).max(axis=1, initial=0.0)) * (time[-1] - time[0]))
+    return float(np.trapezoid(_saturated(flight), time)) if len(time) else 0.0
+
+
+def _averages(time: Array, tension: Array, flight: dict[str, Array]) -> dict[str, float]:
+    """Return the averages of a flight's samples; those of one sample are its values."""
+    values = integrands(tension, flight["throttle"], flight["attitude"][:, 1], _saturated(flight))
+    span = float(time[-1] - time[0])
+    if span <= 0:
+        return {**averages(Sums(*(value[0] for value in values)), 0.0, 1.0), "saturated_seconds": 0.0}
+    travel = travelled(flight["throttle"][:-1], flight["throttle"][1:]).sum()
+    found = averages(Sums(*(np.trapezoid(value, time) for value in values)), travel, span)
+    return {name: float(value) for name, value in found.items()}
 
 
 def docking_metrics(flight: dict[str, Array], limits: list[float]) -> dict[str, Any]:
@@ -131,21 +198,19 @@ def docking_metrics(flight: dict[str, Array], limits: list[float]) -> dict[str, 
     cables = tensions.shape[1]
     tension = tensions.max(axis=1) if cables else np.zeros_like(time)
     fine_time, fine_tension = refined(time, tension)
-    pitch = flight["attitude"][:, 1]
-    rates = flight["rewind_rate"]
-    chi = flight["misalignment"]
-    sag = flight["cable_clearance"]
+    chi, sag = flight["misalignment"], flight["cable_clearance"]
+    found = _averages(time, tension, flight)
     return {
         "tension_max": float(fine_tension.max()),
-        "tension_mean": mean(time, tension),
+        "tension_mean": found["tension_mean"],
         "tension_largest": float(flight["tension_largest"].max(initial=0.0)),
-        "rewind_rate_min": float(rates.min()) if cables else 0.0,
+        "rewind_rate_min": float(flight["rewind_rate"].min()) if cables else 0.0,
         "seconds_above": [seconds_above(fine_time, fine_tension, limit) for limit in limits],
-        "ADC": duty_cycle(time, flight["throttle"]),
-        "E": float(control_energy(time, flight["throttle"])),
-        "theta_rms": float(np.degrees(np.sqrt(mean(time, pitch**2)))),
+        "ADC": found["ADC"],
+        "E": found["E"],
+        "theta_rms": found["theta_rms"],
         "clearance_min": float(flight["clearance"].min()),
         "cable_clearance_min": float(sag.min()) if cables else None,
-        "saturated_seconds": saturated_seconds(flight),
-        "misalignment_jumps": jumps(chi[:, 0]) if cables else 0,
+        "saturated_seconds": found["saturated_seconds"],
+        "misalignment_jumps": int(np.sum(jumped(chi[:-1, 0], chi[1:, 0]))) if cables else 0,
     }

@@ -15,6 +15,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from tethership.plant.loop import ClosedLoop
+from tethership.results.metrics import averages
 from tethership.simulation.events import MARGINS, StopConditions
 from tethership.simulation.outcome import Outcome
 from tethership.simulation.tally import Signals, Tally, add, begin, signals
@@ -294,18 +295,14 @@ def metrics_of(result: BatchResult) -> dict[str, np.ndarray]:
         "flight_time": tally.time,
         "docking_time": np.where(outcome == 0, tally.time, np.nan),
         "tension_max": tally.tension_max,
-        "tension_mean": tally.tension_sum / span,
+        **averages(tally.sums, tally.travel, span),
         "tension_largest": tally.largest_max,
         "tension_anchor": tally.anchor_max,
         "roll_max": np.degrees(tally.roll_max),
         "pitch_max": np.degrees(tally.pitch_max),
         "rewind_rate_min": tally.slowest,
         "seconds_above": np.moveaxis(tally.above, -1, 0),
-        "ADC": tally.travel / span,
-        "E": tally.effort_sum / span,
-        "theta_rms": np.degrees(np.sqrt(tally.pitch_sum / span)),
         "clearance_min": tally.clearance,
-        "saturated_seconds": tally.saturated_sum,
         "misalignment_jumps": tally.jumps,
         "quasi_static_outside": tally.outside_sum / span,
         "snap_impulse": tally.impulse,

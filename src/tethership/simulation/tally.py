@@ -1,7 +1,7 @@
 """Metrics of Tables 3–6 summed up while a flight is flown, so that a batch keeps no samples.
 
-Depends on: plant.loop, control, physics by their results. The definitions are those of `results.metrics`,
-which reads them off a flight's samples, and of `simulation.quasi_static`; tests hold them against each other.
+Depends on: plant.loop, control, physics by their results, results.metrics. What is summed is defined there, and of the
+cable's pace in `simulation.cable_pace`; a single flight reads the same off its samples.
 """
 
 from typing import NamedTuple
@@ -13,6 +13,7 @@ from tethership.control import misalignment
 from tethership.plant.cable import end_tension
 from tethership.plant.instant import Instant
 from tethership.plant.loop import ClosedLoop
+from tethership.results.metrics import Sums, integrands, jumped, share_above, travelled
 from tethership.simulation.cable_pace import LEAST_MASS, LEAST_TENSION, MEMORY, SLACK, TRUSTED, first_mode
 from tethership.spatial import safe_norm
 
@@ -104,8 +105,8 @@ class Tally(NamedTuple):
         Peaks [N].
     roll_max, pitch_max : Float[Array, ""]
         Largest |φ| and |θ| [rad].
-    tension_sum, effort_sum, pitch_sum, saturated_sum : Float[Array, ""]
-        ∫|F| dt [N s], Σ∫|δ| dt [s], ∫θ² dt [rad² s], time with a thruster saturated [s].
+    sums : Sums
+        Integrals of |F| [N s], Σ|δ| [s], θ² [rad² s], and the time with a thruster or fin saturated [s].
     travel : Float[Array, ""]
         Σ∫|dδ/dt| dt [-].
     above : Float[Array, "limits"]
@@ -132,10 +133,7 @@ class Tally(NamedTuple):
     anchor_max: Float[Array, ""]
     roll_max: Float[Array, ""]
     pitch_max: Float[Array, ""]
-    tension_sum: Float[Array, ""]
-    effort_sum: Float[Array, ""]
-    pitch_sum: Float[Array, ""]
-    saturated_sum: Float[Array, ""]
+    sums: Sums
     travel: Float[Array, ""]
     above: Float[Array, "limits"]
     slowest: Float[Array, ""]
@@ -159,10 +157,7 @@ def begin(first: Signals, limits: Float[Array, "limits"]) -> Tally:
         first.anchor,
         jnp.abs(first.roll),
         jnp.abs(first.pitch),
-        zero,
-        zero,
-        zero,
-        zero,
+        Sums(zero, zero, zero, zero),
         zero,
         jnp.zeros_like(limits),
         first.rewind_rate,
@@ -182,12 +177,9 @@ def _vertex(before: Array, middle: Array, after: Array) -> Array:
     return middle - jnp.where(top, 0.5 * slope**2 / jnp.where(top, bend, -1.0), 0.0)
 
 
-def _share_above(start: Array, end: Array, limit: Array) -> Array:
-    """Return the share of a step that a straight line from start to end is above a limit [-]."""
-    over, later = start - limit, end - limit
-    crossing = jnp.clip(-over / jnp.where(later == over, 1.0, later - over), 0.0, 1.0)
-    one_sided = jnp.where(over > 0, crossing, jnp.where(later > 0, 1.0 - crossing, 0.0))
-    return jnp.where((over > 0) & (later > 0), 1.0, one_sided)
+def _summed(at: Signals) -> Sums:
+    """Return what is integrated at one time."""
+    return integrands(at.tension, at.throttle, at.pitch, at.saturated)
 
 
 def add(
@@ -231,15 +223,14 @@ def add(
         anchor_max=jnp.maximum(tally.anchor_max, reached(last.anchor, now.anchor)),
         roll_max=jnp.maximum(tally.roll_max, jnp.abs(reached(last.roll, now.roll))),
         pitch_max=jnp.maximum(tally.pitch_max, jnp.abs(reached(last.pitch, now.pitch))),
-        tension_sum=tally.tension_sum + partly(last.tension, now.tension),
-        effort_sum=tally.effort_sum + jnp.sum(partly(jnp.abs(last.throttle), jnp.abs(now.throttle))),
-        pitch_sum=tally.pitch_sum + partly(last.pitch**2, now.pitch**2),
-        saturated_sum=tally.saturated_sum + partly(last.saturated, now.saturated),
-        travel=tally.travel + share * jnp.sum(jnp.abs(now.throttle - last.throttle)),
-        above=tally.above + span * _share_above(last.tension, tension, limits),
+        sums=Sums(
+            *(total + partly(*ends) for total, *ends in zip(tally.sums, _summed(last), _summed(now), strict=True))
+        ),
+        travel=tally.travel + share * travelled(last.throttle, now.throttle),
+        above=tally.above + span * share_above(last.tension, tension, limits),
         slowest=jnp.minimum(tally.slowest, reached(last.rewind_rate, now.rewind_rate)),
         clearance=jnp.minimum(tally.clearance, reached(last.clearance, now.clearance)),
-        jumps=tally.jumps + (jnp.abs(now.misalignment - last.misalignment) > 0.5 * jnp.pi) * (share >= 1.0),
+        jumps=tally.jumps + jumped(last.misalignment, now.misalignment) * (share >= 1.0),
         swinging=jnp.where(hurried, MEMORY, jnp.maximum(tally.swinging - span, 0.0)),
         outside_sum=tally.outside_sum + jnp.where(hurried, span, jnp.minimum(tally.swinging, span)),
         slack=(tally.slack & ~taut) | (now.elongation < SLACK),
