@@ -207,6 +207,8 @@ def _docking(study: _Study) -> Section | None:
     if part is None and not figures:
         return None
     words = ["The docking under the three control logics, and what the text of section 4 says of it."]
+    if figures:
+        words.append("Beside this page `figures/figure_12.html` to `figures/figure_14.html` play the flights in space.")
     shown = (
         [] if part is None else [tables.claims_table(part["claims"], "Claims D1–D11 of section 4.", "docking_claims")]
     )
