@@ -80,14 +80,9 @@ def linear_pictures(folder: Path, settings: Settings) -> dict[str, Any]:
     changes = {"vehicle": vehicle_name(settings.formulation)}
     for number in FIGURES:
         drawn = linear_figure(number, settings.formulation, changes)
-        pictures.png(f"figure_{number:02d}", plot_figure(drawn))
+        pictures.png(f"figure_{number:02d}", plot_linear_figure(drawn))
         pictures.plot(f"figure_{number:02d}", interactive_linear_figure(drawn))
     return pictures.result()
-
-
-def plot_figure(drawn: Any) -> matplotlib.figure.Figure:
-    """Return the picture of a linear figure."""
-    return plot_linear_figure(drawn)
 
 
 def docking_pictures(folder: Path, settings: Settings) -> dict[str, Any]:
