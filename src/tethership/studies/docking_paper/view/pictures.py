@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib.figure
-import plotly.graph_objects as go
-from plotly.offline import get_plotlyjs
 
+from tethership._extras import needs
 from tethership.results.files import write_atomically, write_together
 from tethership.simulation import Flight
 from tethership.studies.docking_paper import FIGURES, linear_figure
@@ -26,6 +25,10 @@ from tethership.view.flight.docking import plot_docking
 from tethership.view.flight.interactive_histories import interactive_histories
 from tethership.view.picture import png
 from tethership.view.replay import write_replay
+
+with needs("plots"):
+    import plotly.graph_objects as go
+    from plotly.offline import get_plotlyjs
 
 DPI = 110
 """Of pictures."""
