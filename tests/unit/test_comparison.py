@@ -12,12 +12,14 @@ import pytest
 
 import tethership as ts
 from tethership.errors import ConfigError
-from tethership.spatial import rotation_matrix
+from tethership.studies.docking_paper.jobs import Settings
+from tethership.studies.docking_paper.study import flight_file
 from tethership.studies.docking_paper.view.comparison import AZIMUTH, ELEVATION, plot_comparison, three_quarter
 from tethership.studies.docking_paper.view.ground_box import box_around, marking
-from tethership.studies.docking_paper.view.interactive_flight import interactive_flight, interactive_histories
-from tethership.view import plot_docking, style
+from tethership.studies.docking_paper.view.pictures import docking_pictures
+from tethership.view import plot_docking
 from tethership.view.flight.hull_mesh import ship_mesh
+from tethership.view.flight.interactive_histories import interactive_histories
 from tethership.view.flight.projection import FROM_EAST
 from tethership.view.flight.snapshots import take_snapshots
 from tethership.view.flight.thinning import evenly, listed, with_peaks
@@ -48,11 +50,6 @@ def start(flight):
 @pytest.fixture(scope="module")
 def figure(flight, start):
     return plot_comparison({"all of it": flight, "<the start>": start}, "Two flights")
-
-
-@pytest.fixture(scope="module")
-def plot(flight):
-    return interactive_flight(flight, "In space")
 
 
 @pytest.fixture(scope="module")
@@ -201,52 +198,6 @@ def test_mesh_is_closed_of_the_hulls_size_and_turned_outward(flight):
     np.testing.assert_array_equal(mesh.vertices[-16:], shape.fins.reshape(-1, 3))
 
 
-def test_scene_is_small_and_has_a_position_for_every_second(plot, flight):
-    assert len(plot.to_json()) < 600_000
-    end = float(flight.data["time"][-1])
-    wanted = [*np.arange(0.0, end, 1.0), end]
-    np.testing.assert_allclose(flight.data["time"][[int(frame.name) for frame in plot.frames]], wanted, atol=0.02)
-    steps = plot.layout.sliders[0].steps
-    np.testing.assert_allclose([float(step.label) for step in steps], wanted, atol=0.02)
-    assert [step.args[0][0] for step in steps] == [frame.name for frame in plot.frames]
-    assert plot.layout.title.text == "In space"
-    assert plot.layout.scene.aspectmode == "data"
-
-
-def test_frames_are_the_flights(plot, flight):
-    mesh = ship_mesh(take_snapshots(flight).shape)
-    for frame in (plot.frames[0], plot.frames[20], plot.frames[-1]):
-        sample = flight.data.isel(time=int(frame.name))
-        ship, cable = frame.data
-        assert list(frame.traces) == [0, 1]
-        north, east, down = sample["cable_curve"][0].to_numpy().T
-        np.testing.assert_allclose([cable.x, cable.y, cable.z], [east, north, -down], rtol=1e-3, atol=1e-3)
-        rotation = np.asarray(rotation_matrix(sample["attitude"].to_numpy()))
-        north, east, down = (sample["position"].to_numpy() + mesh.vertices @ rotation.T).T
-        np.testing.assert_allclose([ship.x, ship.y, ship.z], [east, north, -down], rtol=1e-3, atol=1e-3)
-        assert f"{sample['tension'][0]:.3g} N" in frame.layout.annotations[0].text
-
-
-def test_what_stays_is_start_end_path_and_ghosts(plot, flight):
-    assert [t.name for t in plot.data][:2] == ["ship", "cable nose"]
-    assert (trace(plot, "start").color, trace(plot, "end").color) == (style.START, style.END)
-    assert list(trace(plot, "start").x) == list(plot.frames[0].data[0].x)
-    assert list(trace(plot, "end").z) == list(plot.frames[-1].data[0].z)
-    path = trace(plot, "centre of buoyancy B")
-    position = flight.data["position"].to_numpy()[-1]
-    np.testing.assert_allclose([path.x[-1], path.y[-1], path.z[-1]], position[[1, 0, 2]] * [1, 1, -1], rtol=1e-3)
-    assert path.customdata[-1][0] == pytest.approx(float(flight.data["time"][-1]), rel=1e-3)
-    ghosts = trace(plot, "every 4 s")
-    assert list(ghosts.x).count(None) == len(take_snapshots(flight).indices)
-    assert trace(plot, "anchor").z == (0.0,)
-
-
-def test_long_flights_have_few_frames(flight):
-    long = interactive_flight(slower(flight, 5.0))
-    assert len(long.frames) <= 91
-    assert len(long.to_json()) < 600_000
-
-
 def test_histories_are_the_flights_with_every_peak(histories, flight):
     assert len(histories.to_json()) < 600_000
     tension = flight.data["tension"][:, 0].to_numpy()
@@ -285,18 +236,28 @@ def test_two_cables_are_drawn_apart(start):
         document["cables"].append({**document["cables"][0], "name": "second"})
 
     both = with_scenario(ts.Flight(double, start.outcome), second)
-    plot = interactive_flight(both)
-    assert list(plot.frames[0].traces) == [0, 1, 2]
-    assert [t.name for t in plot.data[1:3]] == ["cable nose", "cable second"]
-    assert plot.data[1].line.color != plot.data[2].line.color
-    assert "tension, second" in [t.name for t in interactive_histories(both).data]
+    plot = interactive_histories(both)
+    first, second = trace(plot, "tension, nose"), trace(plot, "tension, second")
+    assert first.line.color != second.line.color
+    assert first.line.dash != second.line.dash
     axes = plot_comparison({"both": both}).axes[0]
     assert by_name(axes, "cable 1") is not by_name(axes, "cable 0")
 
 
+def test_a_docking_of_the_study_is_drawn_explored_and_played(flight, tmp_path):
+    flight.save(flight_file(tmp_path, ("rewind", 12.0)))
+    written = docking_pictures(tmp_path, Settings("consistent"))["files"]
+    assert {file for file in written if "figure_12" in file} == {
+        "figures/figure_12.png",
+        "figures/figure_12.html",
+        "figures/figure_12_histories.json",
+        "figures/figure_12_histories.html",
+    }
+    assert all((tmp_path / file).stat().st_size > 10_000 for file in written)
+    assert "rewind control" in (tmp_path / "figures" / "figure_12.html").read_text(encoding="utf-8")
+
+
 def test_flight_without_a_cable(hover):
-    plot = interactive_flight(hover)
-    assert [t.name for t in plot.data if t.name] == ["ship", "centre of buoyancy B", "start", "end"]
     histories = interactive_histories(hover)
     assert all(isinstance(t, go.Scatter) for t in histories.data)
     assert len(histories.data) == hover.data.sizes["thruster"]

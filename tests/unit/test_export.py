@@ -107,7 +107,7 @@ def test_parquet_without_pyarrow_says_what_to_install(run, stored, tmp_path, mon
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     code, out, err = run("export", stored, "--to", "parquet", "--out", tmp_path)
     assert (code, out) == (2, "")
-    assert err == 'tethership: parquet needs pyarrow; install it: pip install "tethership[parquet]"\n'
+    assert err == "tethership: parquet needs pyarrow, which is not installed: pip install 'tethership[parquet]'\n"
     assert list(tmp_path.iterdir()) == []
 
 

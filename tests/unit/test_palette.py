@@ -5,11 +5,15 @@ If one of these failed, one man in twelve would take one thruster for another, o
 
 import itertools
 import re
+from pathlib import Path
 
+import matplotlib
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from tethership.view import style
+from tethership.view.campaign.figures import plot_peaks
 from tethership.view.report.page_file import page_text
 
 LEAST = 12.0
@@ -140,3 +144,28 @@ def test_text_of_the_pages_is_read():
     assert min(map(contrast, style.LIMITS)) >= READABLE
     assert contrast(palette["bad"], "#fcf1f2") >= READABLE
     assert contrast(palette["fair"], "#fdf8ec") >= READABLE
+
+
+@pytest.mark.parametrize("given", [False, True])
+def test_one_style_holds_whatever_the_callers_is(given):
+    """Sizes and colours of text and grid are the sheet's when the picture is saved, and the caller's style stays."""
+    peaks = {"one": np.linspace(100.0, 900.0, 50)}
+    with matplotlib.rc_context({"font.size": 21.0, "axes.grid": False, "text.color": "red", "grid.color": "red"}):
+        before = dict(matplotlib.rcParams)
+        axes = plot_peaks(peaks, {"tear": 481.0}, Figure().subplots() if given else None)
+        assert dict(matplotlib.rcParams) == before
+        axes.figure.canvas.draw()
+    assert {text.get_fontsize() for text in axes.texts} == {style.SMALL}
+    for axis in (axes.xaxis, axes.yaxis):
+        assert axis.label.get_fontsize() == style.SHEET["font.size"]
+        assert {label.get_fontsize() for label in axis.get_ticklabels(which="both")} == {style.SMALL}
+        assert {line.get_color() for line in axis.get_gridlines()} == {style.GUIDE}
+        assert all(line.get_visible() for line in axis.get_gridlines())
+
+
+def test_sizes_stand_in_the_sheet_alone():
+    """No picture has a size of text of its own: the sheet has them all, and `style` what differs on purpose."""
+    named = {"style.SMALL", "style.LARGE", '"medium"'}
+    for path in Path(style.__file__).parents[1].rglob("*.py"):
+        found = re.findall(r"(?:fontsize|labelsize|titlesize)=([^,)\n]+)", path.read_text(encoding="utf-8"))
+        assert set(found) <= named or path.name == "style.py", path

@@ -9,15 +9,21 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import zarr
-from zarr.codecs import Crc32cCodec, ZstdCodec
-from zarr.storage import MemoryStore
 
+from tethership._extras import needs
 from tethership.campaign.marks import Form
 from tethership.campaign.plan import Plan
 
 RESULTS = "results.zarr"
 METADATA = "zarr.json"
+
+
+def zarr_library() -> Any:
+    """Return zarr; raises ConfigError with the cure where it is not installed."""
+    with needs("campaign"):
+        import zarr.codecs
+        import zarr.storage
+    return zarr
 
 
 class Arrays:
@@ -34,14 +40,15 @@ class Arrays:
     def __init__(self, folder: Path, plan: Plan) -> None:
         self.root, self._plan = folder / RESULTS, plan
         self._open: dict[str, Any] = {}
+        self._zarr = zarr_library()
 
     def lay_out(self) -> None:
         """Make the group and its inputs where they are not as they must be."""
         plan = self._plan
         attributes = {"laws": [law.name for law in plan.laws], "inputs": list(plan.names)}
-        if _group_attributes(self.root) != attributes:
+        if self._group_attributes() != attributes:
             (self.root / METADATA).unlink(missing_ok=True)
-            zarr.create_group(self.root, attributes=attributes)
+            self._zarr.create_group(self.root, attributes=attributes)
         chunks = (1, plan.lanes, plan.values.shape[2])
         self._keep_input("input", plan.values, chunks, ("law", "case", "quantity"))
         replicate = np.asarray(plan.sample.replicate)
@@ -75,8 +82,9 @@ class Arrays:
 
     def _array(self, name: str, made: dict[str, Any]) -> Any:
         """Return an array with these metadata; where it has others it gets them, and keeps its chunks."""
-        made = {**made, "compressors": (ZstdCodec(level=0), Crc32cCodec())}
-        wanted = zarr.create_array(MemoryStore(), name=name, **made).metadata.to_dict()
+        zarr = self._zarr
+        made = {**made, "compressors": (zarr.codecs.ZstdCodec(level=0), zarr.codecs.Crc32cCodec())}
+        wanted = zarr.create_array(zarr.storage.MemoryStore(), name=name, **made).metadata.to_dict()
         try:
             there = zarr.open_array(self.root / name, mode="r+")
             if repr(there.metadata.to_dict()) == repr(wanted):  # by their words: a fill value of NaN is not itself
@@ -86,10 +94,9 @@ class Arrays:
         (self.root / name / METADATA).unlink(missing_ok=True)
         return zarr.create_array(self.root, name=name, **made)
 
-
-def _group_attributes(root: Path) -> Any:
-    """Return the attributes of a group, None where it is not there or not readable."""
-    try:
-        return dict(zarr.open_group(root, mode="r").attrs)
-    except Exception:  # whatever the libraries make of damaged metadata
-        return None
+    def _group_attributes(self) -> Any:
+        """Return the attributes of the group, None where it is not there or not readable."""
+        try:
+            return dict(self._zarr.open_group(self.root, mode="r").attrs)
+        except Exception:  # whatever the libraries make of damaged metadata
+            return None

@@ -14,6 +14,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from typing import Any, NamedTuple, cast
 
+from tethership._extras import needs
 from tethership._version import __version__
 from tethership.campaign.plan import Batch, Plan
 from tethership.campaign.store import CampaignStore
@@ -147,13 +148,11 @@ def on_cluster(address: str) -> Iterator[Hands]:
     Raises
     ------
     ConfigError
-        dask.distributed is not installed, the scheduler does not answer, it has no workers, or a worker lacks this
+        Dask's `distributed` is not installed, the scheduler does not answer, it has no workers, or a worker lacks this
         version of the package.
     """
-    try:
+    with needs("cluster"):
         from distributed import Client
-    except ImportError as error:
-        raise ConfigError("--scheduler needs dask.distributed: pip install 'tethership[cluster]'") from error
     for name in ("distributed", "distributed.client"):  # a scheduler that dies would fill the screen
         logging.getLogger(name).handlers[:] = [logging.NullHandler()]
     try:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import xarray as xr
 
 from tethership.campaign.answers import answer
+from tethership.campaign.arrays import zarr_library
 from tethership.campaign.execute import Hands, Progress, fly_campaign, in_processes, in_this_process, on_cluster
 from tethership.campaign.kept import keep_flights
 from tethership.campaign.plan import Plan, make_plan
@@ -81,6 +82,7 @@ def run_campaign(
     """
     if workers is not None and scheduler is not None:
         raise ConfigError("workers and scheduler exclude each other; give one")
+    zarr_library()  # before anything is written
     plan = make_plan(name, dict(changes or {}), dict(scenario_changes or {}), trust)
     plan.scenario.check_trust()
     owner(Path(folder), plan)

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from tethership._version import __version__
-from tethership.campaign.arrays import RESULTS, Arrays
+from tethership.campaign.arrays import RESULTS, Arrays, zarr_library
 from tethership.campaign.manifest import MANIFEST, Manifest, read_manifest, write_manifest
 from tethership.campaign.marks import MARKS, Form, Mark, read_marks, write_mark
 from tethership.campaign.plan import Batch, Plan
@@ -182,7 +182,7 @@ def open_results(folder: str | Path) -> xr.Dataset:
     Raises
     ------
     ConfigError
-        The folder holds no campaign, or numbers of it are lost or changed.
+        The folder holds no campaign, numbers of it are lost or changed, or zarr is not installed.
 
     Warns
     -----
@@ -195,6 +195,7 @@ def open_results(folder: str | Path) -> xr.Dataset:
         raise ConfigError(f"{folder} holds no campaign; give the folder that `tethership campaign` wrote")
     if manifest.unsealed:
         warnings.warn(f"{folder}: written by tethership 0.1, without a checksum", TethershipWarning, stacklevel=2)
+    zarr_library()
     loaded = _loaded(folder / RESULTS, manifest)
     _check_batches(folder, manifest, loaded)
     for name in set(UNITS) & set(loaded):

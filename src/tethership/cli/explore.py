@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from tethership._extras import needs
 from tethership.cli.common import JsonOption, ScenarioArgument, print_json
 from tethership.errors import ConfigError
 
@@ -42,7 +43,8 @@ def explore(
     if host not in LOOPBACK:
         raise ConfigError(f"--host {host}: the page is served to this machine alone; leave --host out")
     name, place = _placed(scenario, folder)
-    from tethership.explorer.server import Explorer, serve_until_signal
+    with needs("explore"):
+        from tethership.explorer.server import Explorer, serve_until_signal
 
     explorer = Explorer(name, place, port)
 

@@ -108,6 +108,9 @@ def _swept(
 ) -> tuple[dict[str, Any], list["Sweep"]]:
     """Return the result of a sweep; writes root_locus.png and root_locus.html."""
     from tethership.analysis import sweep as compute
+    from tethership.view.linear.interactive_locus import interactive_root_locus, page
+    from tethership.view.linear.root_locus import plot_root_loci
+    from tethership.view.picture import png
 
     with stage("sweep"):
         found = compute(scenario, *axes, loop=loop)
@@ -119,10 +122,6 @@ def _swept(
     }
     result = head | summary(found)
     with stage("draw"):
-        from tethership.view.linear.interactive_locus import interactive_root_locus, page
-        from tethership.view.linear.root_locus import plot_root_loci
-        from tethership.view.picture import png
-
         drawn = page(interactive_root_locus(found, scenario.config.title))
         picture = png(plot_root_loci(found), 120)
     pair = write_together({out / "root_locus.png": picture, out / "root_locus.html": drawn})

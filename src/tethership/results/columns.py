@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
+from tethership._extras import needs
 from tethership.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -52,10 +53,8 @@ def _csv(frame: "pd.DataFrame") -> bytes:
 
 def _parquet(frame: "pd.DataFrame") -> bytes:
     """Return the table as Apache Parquet."""
-    try:
+    with needs("parquet"):
         importlib.import_module("pyarrow")
-    except ImportError as error:
-        raise ConfigError('parquet needs pyarrow; install it: pip install "tethership[parquet]"') from error
     return frame.to_parquet(engine="pyarrow")
 
 

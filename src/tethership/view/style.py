@@ -1,13 +1,29 @@
-"""Colours and sizes of the figures and pages, readable in print. Depends on nothing.
+"""Colours and sizes of the figures and pages, readable in print. Depends on: matplotlib.
+
+What matplotlib can be told in general stands in `data/tethership.mplstyle`, which `styled` applies and nothing else
+does; what differs from it on purpose has a name here.
 
 Colours that stand together differ by at least 12 (CIEDE2000) for normal eyes and for protanopes, deuteranopes and
 tritanopes (Machado, Oliveira & Fernandes, 2009), and no colour is the only sign of what it means.
 """
 
-INK = "#222222"
+import functools
+from collections.abc import Callable
+from importlib import resources
+from typing import ParamSpec, TypeVar
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+with resources.as_file(resources.files("tethership") / "data" / "tethership.mplstyle") as _path:
+    SHEET = matplotlib.rc_params_from_file(_path, use_default_template=False)
+"""What matplotlib is told, by its own names."""
+
+INK: str = SHEET["text.color"]
 """Text and axes."""
 
-GUIDE = "#DDDDDD"
+GUIDE: str = SHEET["grid.color"]
 """Grid lines."""
 
 START = "#004400"
@@ -28,7 +44,7 @@ GROUND = "#EDE6DA"
 GUST = "#F6E7B0"
 """Time of a gust, shaded."""
 
-SERIES = ("#0072B2", "#CC7A00", "#000000", "#802800", "#888888", "#101090")
+SERIES: tuple[str, ...] = tuple(SHEET["axes.prop_cycle"].by_key()["color"])
 """Cables, thrusters, angles, loads, in turn."""
 
 MARKS = ("o", "s", "^", "D", "v", "P")
@@ -55,11 +71,46 @@ TENSION = ("#9CC9E8", "#3B8CC4", "#274B7A", "#E0A030", "#B84A00", "#4A0010")
 ARROWS = {"thrust": "#00876C", "wind": "#2B3A4A", "gust": "#C98A00"}
 """Arrows in space: thrust on the ship, mean wind, gust."""
 
-FONT = 9.0
-"""Text [pt]."""
+SMALL: float = SHEET["xtick.labelsize"]
+"""Words among what is drawn, as large as the numbers of an axis [pt]."""
 
-SMALL = 8.0
-"""Labels inside the axes and of ticks [pt]."""
+LARGE = "x-large"
+"""The heading of a whole picture, over its other text."""
+
+HAIR, THIN = 0.6, 0.9
+"""Widths of lines that step back: what is one of many, and what only bounds or points [pt]."""
+
+Given = ParamSpec("Given")
+Drawn = TypeVar("Drawn", Axes, Figure)
+
+
+def styled(draw: Callable[Given, Drawn]) -> Callable[Given, Drawn]:
+    """Return a function that draws, axes or a figure, in this style.
+
+    Axes that it is given were made in another style, and get this one's grid and labels. Ticks are made at once:
+    matplotlib makes some when the figure is saved, in whatever style holds then.
+    """
+
+    @functools.wraps(draw)
+    def drawn(*args: Given.args, **kwargs: Given.kwargs) -> Drawn:
+        with matplotlib.rc_context(SHEET):
+            for axes in (given for given in (*args, *kwargs.values()) if isinstance(given, Axes)):
+                _restyle(axes)
+            found = draw(*args, **kwargs)
+            for axes in () if found.figure is None else found.figure.axes:
+                _ = [(axis.majorTicks, axis.minorTicks) for axis in (axes.xaxis, axes.yaxis)]
+            return found
+
+    return drawn
+
+
+def _restyle(axes: Axes) -> None:
+    """Give axes what matplotlib reads when it makes them."""
+    axes.grid(SHEET["axes.grid"], color=GUIDE, linewidth=SHEET["grid.linewidth"])
+    axes.set_axisbelow(SHEET["axes.axisbelow"])
+    axes.tick_params(which="both", labelsize=SMALL)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.label.set(size=SHEET["axes.labelsize"], color=SHEET["axes.labelcolor"])
 
 
 def cable_colour(index: int) -> str:

@@ -13,6 +13,7 @@ import numpy as np
 import scipy.linalg
 import xarray as xr
 
+from tethership._extras import needs
 from tethership._version import __version__
 from tethership.errors import ConfigError, suggestion
 from tethership.plant.names import LENGTH, WIND_INPUTS
@@ -222,13 +223,14 @@ class LinearModel:
         Raises
         ------
         ConfigError
-            A name is not in the model, or there is no input.
+            A name is not in the model, there is no input, or python-control is not installed.
 
         Notes
         -----
         Every signal keeps its SI unit, throttles theirs [-]; a discrete model's `dt` is its `sample_time` [s].
         """
-        import control
+        with needs("control"):
+            import control
 
         chosen = self.select(inputs=self.controls if inputs is None else inputs)
         if not chosen.inputs:

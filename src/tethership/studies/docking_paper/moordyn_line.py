@@ -31,7 +31,8 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from tethership.errors import ConfigError, SolveError
+from tethership._extras import needs
+from tethership.errors import SolveError
 from tethership.spatial import STANDARD_GRAVITY
 
 Vector = NDArray[np.float64]
@@ -124,10 +125,8 @@ class LineProperties(NamedTuple):
 
 def load_moordyn() -> ModuleType:
     """Return the module `moordyn`; raises ConfigError with the cure where it is not installed."""
-    try:
+    with needs("reproduce"):
         import moordyn
-    except ImportError as error:
-        raise ConfigError('a dynamic cable needs MoorDyn: pip install "tethership[reproduce]"') from error
     return moordyn
 
 

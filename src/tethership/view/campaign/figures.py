@@ -26,6 +26,7 @@ def new_axes(axes: Axes | None, height: float) -> Axes:
     return Figure(figsize=(WIDTH, height), layout="constrained").subplots() if axes is None else axes
 
 
+@style.styled
 def plot_limits(found: Mapping[str, Mapping[str, Mapping[str, Any]]], confidence: float, axes: Axes | None) -> Axes:
     """Draw the probability of exceeding each limit with its interval.
 
@@ -50,16 +51,17 @@ def plot_limits(found: Mapping[str, Mapping[str, Mapping[str, Any]]], confidence
         reach = np.stack([middle - low, high - middle]).clip(0.0)
         axes.errorbar(middle, place, xerr=reach, fmt="o", markersize=4, capsize=2.5, color=COLOURS[i % len(COLOURS)])
         axes.plot([], [], "o", color=COLOURS[i % len(COLOURS)], markersize=4, label=law)
-    axes.set_yticks(np.arange(len(limits)), [limit.replace("_", " ") for limit in limits], fontsize=style.FONT)
+    axes.set_yticks(np.arange(len(limits)), [limit.replace("_", " ") for limit in limits])
     axes.invert_yaxis()
     axes.set_xlim(-0.02, 1.02)
     axes.xaxis.set_major_formatter(PercentFormatter(1.0))
     axes.set_xlabel(f"probability of exceeding the limit, {100 * confidence:g} % interval")
-    axes.grid(alpha=0.25, axis="x")
-    axes.legend(frameon=False, fontsize=style.FONT, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    axes.grid(False, axis="y")
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return axes
 
 
+@style.styled
 def plot_peaks(peaks: Mapping[str, np.ndarray], limits: Mapping[str, float], axes: Axes | None = None) -> Axes:
     """Draw which share of flights has a peak tension above a level.
 
@@ -80,18 +82,18 @@ def plot_peaks(peaks: Mapping[str, np.ndarray], limits: Mapping[str, float], axe
     reached = max((float(np.nanmax(values)) for values in peaks.values() if np.isfinite(values).any()), default=0.0)
     for name, level in limits.items():
         if level < 1.6 * reached:
-            axes.axvline(level, color="0.5", linewidth=0.8, linestyle="--")
+            axes.axvline(level, color="0.5", linewidth=style.THIN, linestyle="--")
             axes.text(
-                level, 1.0, f" {name.replace('_', ' ')}", rotation=90, va="top", fontsize=style.FONT - 1, color="0.35"
+                level, 1.0, f" {name.replace('_', ' ')}", rotation=90, va="top", fontsize=style.SMALL, color="0.35"
             )
     axes.set_xlabel("largest tension at the tether point [N]")
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
     axes.set_ylabel("share of flights above it")
-    axes.legend(frameon=False, fontsize=style.FONT)
-    axes.grid(alpha=0.25)
+    axes.legend()
     return axes
 
 
+@style.styled
 def plot_times(times: Mapping[str, np.ndarray], limit: float | None, axes: Axes | None = None) -> Axes:
     """Draw how long docking takes: law → time of each flight that docked [s]; the limit [s] where there is one."""
     axes = new_axes(axes, 3.6)
@@ -100,15 +102,16 @@ def plot_times(times: Mapping[str, np.ndarray], limit: float | None, axes: Axes 
     if len(everything):
         edges = np.histogram_bin_edges(everything, bins=40).tolist()
         for i, (law, values) in enumerate(finite.items()):
-            axes.hist(values, edges, histtype="step", linewidth=1.4, color=COLOURS[i % len(COLOURS)], label=law)
-        axes.legend(frameon=False, fontsize=style.FONT)
+            axes.hist(values, edges, histtype="step", color=COLOURS[i % len(COLOURS)], label=law)
+        axes.legend()
     if limit is not None:
-        axes.axvline(limit, color="0.5", linewidth=0.8, linestyle="--")
+        axes.axvline(limit, color="0.5", linewidth=style.THIN, linestyle="--")
     axes.set_xlabel("time to dock [s]")
     axes.set_ylabel("flights")
     return axes
 
 
+@style.styled
 def plot_convergence(
     settling: Mapping[str, Mapping[str, np.ndarray]], confidence: float, axes: Axes | None = None
 ) -> Axes:
@@ -122,11 +125,11 @@ def plot_convergence(
     axes.set_xlabel("flights")
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
     axes.set_ylabel(f"probability, {100 * confidence:g} % interval")
-    axes.legend(frameon=False, fontsize=style.FONT, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    axes.grid(alpha=0.25)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return axes
 
 
+@style.styled
 def plot_importance(entries: Sequence[Mapping[str, Any]], axes: Axes | None = None) -> Axes:
     """Draw rank correlations [-], and Sobol's indices [-] where the design gave them; entries from `Importance`."""
     sobol = entries[0]["total"] is not None
@@ -138,17 +141,19 @@ def plot_importance(entries: Sequence[Mapping[str, Any]], axes: Axes | None = No
         reach = np.maximum(np.abs(ends - total), 0.0)
         axes.barh(rows - 0.18, total, 0.34, color=COLOURS[0], xerr=reach, label="Sobol total")
         axes.barh(rows + 0.18, [entry["first"] for entry in entries], 0.34, color=COLOURS[1], label="Sobol first order")
-        axes.legend(frameon=False, fontsize=style.FONT)
+        axes.legend()
         axes.set_xlabel("share of the variance of the peak tension [-]")
     else:
         axes.barh(rows, [entry["rank_correlation"] for entry in entries], 0.6, color=COLOURS[0])
-        axes.axvline(0.0, color="0.4", linewidth=0.8)
+        axes.axvline(0.0, color="0.4", linewidth=style.THIN)
         axes.set_xlabel("rank correlation with the peak tension [-]")
-    axes.set_yticks(rows, [entry["name"] for entry in entries], fontsize=style.FONT)
+    axes.grid(False, axis="y")
+    axes.set_yticks(rows, [entry["name"] for entry in entries])
     axes.invert_yaxis()
     return axes
 
 
+@style.styled
 def plot_tail(peaks: np.ndarray, tail: Mapping[str, Any]) -> Figure:
     """Draw fitted beside empirical quantiles of the excess, and the return levels with their intervals.
 
@@ -166,7 +171,7 @@ def plot_tail(peaks: np.ndarray, tail: Mapping[str, Any]) -> Figure:
     fitted = scipy.stats.genpareto.ppf(rank, tail["shape"], 0.0, tail["scale"])
     left.plot(fitted, excess, ".", color=COLOURS[0], markersize=4)
     top = max(fitted[-1], excess[-1])
-    left.plot([0, top], [0, top], color="0.6", linewidth=0.8)
+    left.plot([0, top], [0, top], color="0.6", linewidth=style.THIN)
     left.set_xlabel(f"fitted excess over {tail['threshold']:.0f} N [N]")
     left.set_ylabel("excess flown [N]")
     place = [entry["probability"] for entry in tail["levels"]]
@@ -179,5 +184,4 @@ def plot_tail(peaks: np.ndarray, tail: Mapping[str, Any]) -> Figure:
     right.xaxis.set_major_formatter(PercentFormatter(1.0))
     right.set_xlabel("probability per flight")
     right.set_ylabel("tension exceeded with it [N]")
-    right.grid(alpha=0.25)
     return drawn

@@ -12,7 +12,7 @@ from tethership.view import style
 from tethership.view.flight.captions import flown_words
 from tethership.view.flight.histories import draw_histories
 from tethership.view.flight.projection import FROM_EAST, FROM_NORTH, FROM_TOP
-from tethership.view.flight.ship_key import ship_keys
+from tethership.view.flight.ship_key import key_row, ship_keys
 from tethership.view.flight.snapshots import Snapshots, take_snapshots
 from tethership.view.flight.trajectory import draw_view
 
@@ -29,6 +29,7 @@ LEGEND_ROOM = 34
 """Letters of cables' names, two more each for the line, that the legend's row holds beside the rest."""
 
 
+@style.styled
 def plot_docking(flight: Flight, figure: Figure | None = None, title: str | None = None) -> Figure:
     """Draw a docking flight as the four panels of Fig. 12 of Riboldi et al.
 
@@ -60,7 +61,6 @@ def plot_docking(flight: Flight, figure: Figure | None = None, title: str | None
     snapshots = take_snapshots(flight)
     figure = Figure(figsize=SIZE) if figure is None else figure
     figure.clear()
-    figure.set_facecolor("white")
     north, east, top, histories = _layout(figure)
     draw_view(north, snapshots, FROM_NORTH)
     draw_view(east, snapshots, FROM_EAST)
@@ -95,35 +95,26 @@ def _title(figure: Figure, snapshots: Snapshots, title: str | None) -> None:
     words = config.title if title is None else title
     flown = "  ·  ".join(flown_words(config, flight.attributes))
     ended = "\n".join(textwrap.wrap(flight.verdict, VERDICT_ROOM))
-    figure.text(LEFT, 0.978, words, fontsize=style.FONT + 4, weight="bold", color=style.INK, va="center")
-    figure.text(LEFT, 0.954, flown, fontsize=style.FONT, color=style.INK, va="center")
-    figure.text(LEFT, 0.944, ended, fontsize=style.FONT, color=style.INK, va="top", linespacing=1.15)
+    figure.text(LEFT, 0.978, words, fontsize=style.LARGE, weight="bold", va="center")
+    figure.text(LEFT, 0.954, flown, va="center")
+    figure.text(LEFT, 0.944, ended, va="top", linespacing=1.15)
 
 
 def _legend(figure: Figure, snapshots: Snapshots) -> None:
     """Explain the views in one row below the title."""
     handles: list[Patch | Line2D] = [
         *ship_keys(snapshots.interval),
-        Line2D([], [], color=style.END, linewidth=1.3, label="centre of buoyancy B"),
+        Line2D([], [], color=style.END, label="centre of buoyancy B"),
     ]
     handles += [
-        Line2D([], [], color=style.cable_colour(i), linewidth=1.0, linestyle=style.cable_line(i), label=label)
+        Line2D([], [], color=style.cable_colour(i), linewidth=style.THIN, linestyle=style.cable_line(i), label=label)
         for i, label in enumerate(_cable_labels(snapshots.cables))
     ]
     if snapshots.cables:
         handles.append(Line2D([], [], color=style.INK, marker="^", linestyle="none", label="anchor"))
     if snapshots.config.gusts:
         handles.append(Patch(facecolor=style.GUST, label="gust"))
-    figure.legend(
-        handles=handles,
-        loc="center left",
-        bbox_to_anchor=(LEFT - 0.005, 0.893),
-        ncols=len(handles),
-        fontsize=style.FONT,
-        frameon=False,
-        borderaxespad=0.0,
-        columnspacing=1.8,
-    )
+    key_row(figure, handles, LEFT - 0.005, 0.893)
 
 
 def _cable_labels(names: list[str]) -> list[str]:

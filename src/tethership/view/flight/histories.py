@@ -32,16 +32,16 @@ def draw_histories(axes: tuple[Axes, Axes, Axes], snapshots: Snapshots) -> None:
     lengths, tensions, rates = axes
     for axis, label in zip(axes, ("length\n[m]", "tension\n[N]", "rewind rate\n[m/s]"), strict=True):
         _dress(axis, snapshots)
-        axis.set_ylabel(label, fontsize=style.FONT)
+        axis.set_ylabel(label)
         axis.yaxis.set_label_coords(-0.11, 0.5)
-    lengths.set_title("Time histories", fontsize=style.FONT, color=style.INK, loc="left")
-    rates.set_xlabel("time [s]", fontsize=style.FONT)
+    lengths.set_title("Time histories")
+    rates.set_xlabel("time [s]")
     for axis in (lengths, tensions):
         axis.tick_params(labelbottom=False)
     if not snapshots.cables:
         for axis in axes:
             axis.set_yticks([])
-            axis.text(0.5, 0.5, "no cable", transform=axis.transAxes, ha="center", va="center", fontsize=style.FONT)
+            axis.text(0.5, 0.5, "no cable", transform=axis.transAxes, ha="center", va="center")
         return
     _draw_lengths(lengths, snapshots)
     _draw_tensions(tensions, snapshots)
@@ -57,7 +57,6 @@ def _draw_each(axes: Axes, snapshots: Snapshots, name: str, linestyle: LineStyle
             values[:, cable],
             color=style.cable_colour(cable),
             linestyle=linestyle,
-            linewidth=1.2,
             marker=style.mark(cable) if dots else "",
             markersize=3.2,
             markevery=snapshots.indices.tolist(),
@@ -74,10 +73,10 @@ def _draw_lengths(axes: Axes, snapshots: Snapshots) -> None:
     axes.set_ylim(0.0, 1.55 * axes.get_ylim()[1])
     axes.yaxis.set_major_locator(MaxNLocator(nbins=4, steps=[1, 2, 5, 10]))
     handles = [
-        Line2D([], [], color=style.INK, linewidth=1.2, marker="o", markersize=3.2, label="cable length"),
-        Line2D([], [], color=style.INK, linewidth=1.2, linestyle=DISTANCE, label="anchor to tether point"),
+        Line2D([], [], color=style.INK, marker="o", markersize=3.2, label="cable length"),
+        Line2D([], [], color=style.INK, linestyle=DISTANCE, label="anchor to tether point"),
     ]
-    axes.legend(handles=handles, fontsize=style.SMALL, frameon=False, loc="upper right", ncols=2)
+    axes.legend(handles=handles, loc="upper right", ncols=2)
 
 
 def _draw_tensions(axes: Axes, snapshots: Snapshots) -> None:
@@ -107,7 +106,7 @@ def _draw_limits(axes: Axes, names: list[str], limits: list[float]) -> None:
     places = spread((np.log(limits) - bottom) / (top - bottom), LABEL_GAP)
     for i, (name, limit, place) in enumerate(zip(names, limits, places, strict=True)):
         colour = style.LIMITS[i % len(style.LIMITS)]
-        axes.axhline(limit, color=colour, linewidth=0.9, linestyle=(0, (6, 2)), zorder=2, gid=name)
+        axes.axhline(limit, color=colour, linewidth=style.THIN, linestyle=(0, (6, 2)), zorder=2, gid=name)
         axes.text(
             1.015,
             place,
@@ -138,11 +137,8 @@ def spread(places: Array, gap: float) -> Array:
 
 
 def _dress(axes: Axes, snapshots: Snapshots) -> None:
-    """Set the time axis, the grid and the gusts' shades."""
+    """Set the time axis and the gusts' shades."""
     start, end = float(snapshots.time[0]), float(snapshots.time[-1])
     axes.set_xlim(start, max(end, start + 1e-3))
-    axes.tick_params(labelsize=style.SMALL)
-    axes.grid(color=style.GUIDE, linewidth=0.5)
-    axes.set_axisbelow(True)
     for gust in snapshots.config.gusts:
         axes.axvspan(gust.start, gust.start + gust.period, facecolor=style.GUST, edgecolor="none", zorder=0, gid="gust")

@@ -3,14 +3,17 @@
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
 from numpy.typing import NDArray
-from plotly.subplots import make_subplots
 
+from tethership._extras import needs
 from tethership.simulation import Flight
 from tethership.view import style
 from tethership.view.flight.snapshots import Snapshots, take_snapshots
 from tethership.view.flight.thinning import listed, with_peaks
+
+with needs("plots"):
+    import plotly.graph_objects as go
+    from plotly.subplots import make_subplots
 
 Array = NDArray[np.float64]
 

@@ -21,6 +21,7 @@ DECADES = 4.0
 """Most decades of the axis below the largest load [-]."""
 
 
+@style.styled
 def plot_loads(
     flight: Flight,
     axes: Axes | None = None,
@@ -72,11 +73,11 @@ def plot_loads(
         dashes = style.dash(place)
         line = (0.0, tuple(0.7 * part for part in dashes)) if dashes else "-"
         label = f"{name.replace('_', ' ')}, rms {strengths[name]:.3g} {unit}"
-        look = {"linestyle": line, "color": style.cable_colour(place), "linewidth": 1.2}
+        look = {"linestyle": line, "color": style.cable_colour(place)}
         axes.plot(time, loads[name], label=label, gid=name, **look)
     _dress(axes, loads, component is None)
     of = "" if component is None else f"{component} component of "
-    axes.set_ylabel(of + KINDS[kind], fontsize=style.FONT)
+    axes.set_ylabel(of + KINDS[kind])
     return axes
 
 
@@ -130,8 +131,5 @@ def _dress(axes: Axes, loads: dict[str, Array], logarithmic: bool) -> None:
         axes.set_yscale("log", nonpositive="clip")
         axes.set_ylim(max(0.5 * least, 10.0**-DECADES * top), 2.0 * top)
         axes.yaxis.set_major_formatter("{x:g}")
-    axes.set_xlabel("time [s]", fontsize=style.FONT)
-    axes.tick_params(labelsize=style.SMALL)
-    axes.grid(color=style.GUIDE, linewidth=0.5)
-    axes.set_axisbelow(True)
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=style.SMALL, frameon=False)
+    axes.set_xlabel("time [s]")
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))

@@ -36,7 +36,6 @@ def draw_view(axes: Axes, snapshots: Snapshots, view: View) -> None:
         path[:, 0],
         path[:, 1],
         color=style.END,
-        linewidth=1.3,
         marker="o",
         markersize=2.6,
         markevery=snapshots.indices.tolist(),
@@ -64,9 +63,9 @@ def _draw_ships(axes: Axes, snapshots: Snapshots, view: View) -> Array:
     polygons: list[Array] = []
     edges, faces, widths, lines = [], [], [], []
     for i in _order(count):
-        colour, fill, width = style.BETWEEN, 0.08, 0.6
+        colour, fill, width = style.BETWEEN, 0.08, style.HAIR
         if i in (0, count - 1):
-            colour, fill, width = (style.START if i == 0 else style.END), 0.22, 1.2
+            colour, fill, width = (style.START if i == 0 else style.END), 0.22, style.SHEET["patch.linewidth"]
         outlines = ship_outlines(snapshots.shape, position[snapshots.indices[i]], snapshots.rotations[i], view)
         polygons += outlines
         edges += [to_rgba(colour)] * len(outlines)
@@ -90,7 +89,7 @@ def _draw_cables(axes: Axes, snapshots: Snapshots, view: View) -> list[Array]:
         lines = LineCollection(
             list(curves),
             colors=colour,
-            linewidths=0.9,
+            linewidths=style.THIN,
             linestyles=style.cable_line(cable),
             zorder=4,
             gid=f"cable {cable}",
@@ -99,7 +98,7 @@ def _draw_cables(axes: Axes, snapshots: Snapshots, view: View) -> list[Array]:
         anchor = curves[0, 0]
         axes.plot(*anchor, marker="^", markersize=7, color=style.INK, zorder=6, linestyle="none", gid="anchor")
         if view.shows_altitude and anchor[1] > ground:
-            axes.plot([anchor[0]] * 2, [ground, anchor[1]], color=style.INK, linewidth=1.5, zorder=2)
+            axes.plot([anchor[0]] * 2, [ground, anchor[1]], color=style.INK, zorder=2)
         drawn.append(curves.reshape(-1, 2))
     return drawn
 
@@ -119,7 +118,7 @@ def _fit(axes: Axes, points: Array) -> None:
 def _draw_ground(axes: Axes, altitude: float) -> None:
     """Fill what is below the ground's altitude [m]."""
     axes.axhspan(altitude - 1e4, altitude, facecolor=style.GROUND, edgecolor="none", zorder=0, gid="soil")
-    axes.axhline(altitude, color=style.INK, linewidth=1.0, zorder=1, gid="ground")
+    axes.axhline(altitude, color=style.INK, linewidth=style.THIN, zorder=1, gid="ground")
 
 
 def _draw_wind(axes: Axes, wind: Array, view: View, points: Array) -> None:
@@ -149,10 +148,9 @@ def _draw_wind(axes: Axes, wind: Array, view: View, points: Array) -> None:
         xytext=tuple(-34.0 * seen),
         textcoords="offset points",
         fontsize=style.SMALL,
-        color=style.INK,
         ha="center",
         va="center",
-        arrowprops={"arrowstyle": "-|>", "color": style.INK, "linewidth": 1.0},
+        arrowprops={"arrowstyle": "-|>", "color": style.INK, "linewidth": style.THIN},
         gid="wind",
     )
 
@@ -167,13 +165,10 @@ def _free_corner(axes: Axes, points: Array) -> Array:
 
 def _dress(axes: Axes, view: View) -> None:
     """Label the axes."""
-    axes.set_title(view.title, fontsize=style.FONT, color=style.INK, loc="left")
-    axes.set_xlabel(view.labels[0], fontsize=style.FONT)
-    axes.set_ylabel(view.labels[1], fontsize=style.FONT)
-    axes.tick_params(labelsize=style.SMALL)
+    axes.set_title(view.title)
+    axes.set_xlabel(view.labels[0])
+    axes.set_ylabel(view.labels[1])
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(nbins=8, steps=[1, 2, 5, 10]))
-    axes.grid(color=style.GUIDE, linewidth=0.5)
-    axes.set_axisbelow(True)
     if view.leftward:
         axes.invert_xaxis()

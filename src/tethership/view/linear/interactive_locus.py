@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
+from tethership._extras import needs
 from tethership.analysis.loci.sweep import Sweep
 from tethership.analysis.modes.spectrum import Complex
 from tethership.view import style
@@ -18,6 +17,10 @@ from tethership.view.linear.mode_names import mode_names
 from tethership.view.linear.panel import Panel
 from tethership.view.linear.root_locus import PANELS, SLOWEST, colour_parameter, display, own_point
 from tethership.view.report.page_file import write_page_text
+
+with needs("plots"):
+    import plotly.graph_objects as go
+    from plotly.subplots import make_subplots
 
 SPACING = 0.2
 """Room between two panels, for a colour bar and labels [share of the page]."""

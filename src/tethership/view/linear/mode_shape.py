@@ -77,6 +77,7 @@ class Motion(NamedTuple):
         return position + _corners(self.shape) @ rotation.T
 
 
+@style.styled
 def plot_modes(model: LinearModel, name: str, axes: Axes | None = None, view: str | None = None) -> Axes:
     """Draw one mode as motion of the ship, as seen from where it moves most.
 
@@ -115,6 +116,7 @@ def plot_modes(model: LinearModel, name: str, axes: Axes | None = None, view: st
     return axes
 
 
+@style.styled
 def plot_all_modes(model: LinearModel) -> Figure:
     """Draw every mode of a model that moves the ship, equal scales [m]; raises ConfigError as `plot_modes`.
 
@@ -124,7 +126,7 @@ def plot_all_modes(model: LinearModel) -> Figure:
     columns = min(3, max(len(modes), 1))
     rows = -(-max(len(modes), 1) // columns)
     drawn = Figure(figsize=(columns * PANEL[0], rows * PANEL[1] + 0.4), layout="constrained")
-    drawn.suptitle(EXPLAINED, fontsize=style.FONT, color=style.INK)
+    drawn.suptitle(EXPLAINED, fontsize=style.SMALL)
     panels = drawn.subplots(rows, columns, squeeze=False).ravel()
     for axes, mode in zip(panels, modes, strict=False):
         motion = mode_motion(model, mode)
@@ -238,14 +240,11 @@ def _draw(axes: Axes, mode: Mode, motion: Motion, view: View) -> None:
     path = np.exp(1j * PHASES) if mode.oscillates else np.linspace(1.0, 0.0, 25)
     ends = np.array([view.project(motion.ends(factor)[:2]) for factor in path])
     for i, label in enumerate(("nose", "tail")):
-        axes.plot(ends[:, i, 0], ends[:, i, 1], color=style.SERIES[0], linewidth=1.0, gid=label, zorder=4)
+        axes.plot(ends[:, i, 0], ends[:, i, 1], color=style.SERIES[0], gid=label, zorder=4)
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel(f"{view.labels[0]}, seen {view.title}", fontsize=style.FONT)
-    axes.set_ylabel(view.labels[1], fontsize=style.FONT)
-    axes.tick_params(labelsize=style.SMALL)
-    axes.grid(color=style.GUIDE, linewidth=0.5)
-    axes.set_axisbelow(True)
-    axes.set_title(f"{mode.name}\n{_words(mode)}", fontsize=style.FONT, color=style.INK, loc="left")
+    axes.set_xlabel(f"{view.labels[0]}, seen {view.title}")
+    axes.set_ylabel(view.labels[1])
+    axes.set_title(f"{mode.name}\n{_words(mode)}")
 
 
 def _ship(axes: Axes, motion: Motion, factor: complex, view: View, colour: str, gid: str, dashed: bool = False) -> None:
@@ -254,9 +253,8 @@ def _ship(axes: Axes, motion: Motion, factor: complex, view: View, colour: str, 
     for outline in ship_outlines(motion.shape, position, rotation, view):
         face = "none" if dashed else (colour, 0.08)
         line = (0, (4, 2)) if dashed else "-"
-        axes.add_patch(
-            Polygon(outline, facecolor=face, edgecolor=colour, linewidth=0.9, linestyle=line, gid=gid, zorder=3)
-        )
+        looks = {"facecolor": face, "edgecolor": colour, "linewidth": style.THIN, "linestyle": line}
+        axes.add_patch(Polygon(outline, gid=gid, zorder=3, **looks))
 
 
 def _words(mode: Mode) -> str:

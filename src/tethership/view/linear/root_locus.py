@@ -65,6 +65,7 @@ def colour_parameter(found: Sweep, name: str | None) -> str:
     return full
 
 
+@style.styled
 def plot_root_locus(
     found: Sweep,
     axes: Axes | None = None,
@@ -114,7 +115,7 @@ def plot_root_locus(
         for line in lines:
             inside = line[good[line]]
             for part in _unbroken(roots[inside], partners[inside, index]):
-                axes.plot(part.real, part.imag, color=style.BETWEEN, linewidth=0.6, zorder=1)
+                axes.plot(part.real, part.imag, color=style.BETWEEN, linewidth=style.HAIR, zorder=1)
             _arrow(axes, roots[inside])
         shade = style.INK if len(value) == 1 else colours.to_rgba(value[good])
         axes.scatter(roots[good].real, roots[good].imag, c=shade, s=16, zorder=2)
@@ -122,11 +123,11 @@ def plot_root_locus(
     _named(axes, found, kept)
     if len(value) > 1 and axes.figure is not None:
         bar = axes.figure.colorbar(colours, ax=axes, pad=0.02)
-        bar.set_label(f"{label} [{unit}]" if unit else label, fontsize=style.FONT)
-        bar.ax.tick_params(labelsize=style.SMALL)
+        bar.set_label(f"{label} [{unit}]" if unit else label)
     return axes
 
 
+@style.styled
 def plot_root_loci(found: Sweep) -> Figure:
     """Draw a sweep twice, all modes and the slow ones, |λ| < 0.4 [1/s]; the scenario's own values are the reference.
 
@@ -138,11 +139,11 @@ def plot_root_loci(found: Sweep) -> Figure:
     if "wind.speed" in found.values:
         title = f"{config.title}\n{found.scenario.formulation} formulation"
     title += ", closed loop" if found.loop == "closed" else ""
-    drawn.suptitle(title, fontsize=style.FONT + 2, color=style.INK)
+    drawn.suptitle(title)
     star = own_point(found)
     for axes, (words, slow) in zip(drawn.subplots(1, 2), PANELS, strict=True):
         plot_root_locus(found, axes, star=star, slow=slow)
-        axes.set_title(words, fontsize=style.FONT + 1)
+        axes.set_title(words)
     return drawn
 
 
@@ -155,6 +156,7 @@ def own_point(found: Sweep) -> int | None:
     return int(np.flatnonzero(same)[0]) if same.any() else None
 
 
+@style.styled
 def plot_panels(panels: Sequence[Panel], title: str) -> Figure:
     """Draw root loci beside each other, Re λ [1/s] across, Im λ [rad/s] up.
 
@@ -162,7 +164,7 @@ def plot_panels(panels: Sequence[Panel], title: str) -> Figure:
     """
     count = len(panels)
     drawn = Figure(figsize=(PANEL[0] * count, PANEL[1]), layout="constrained")
-    drawn.suptitle(title, fontsize=style.FONT + 2, color=style.INK)
+    drawn.suptitle(title)
     for axes, panel in zip(np.atleast_1d(drawn.subplots(1, count)), panels, strict=True):
         _panel(axes, panel)
     return drawn
@@ -170,7 +172,7 @@ def plot_panels(panels: Sequence[Panel], title: str) -> Figure:
 
 def _panel(axes: Axes, panel: Panel) -> None:
     plot_root_locus(panel.sweep, axes, panel.parameter, panel.star, panel.free, panel.slow)
-    axes.set_title(panel.title, fontsize=style.FONT + 1)
+    axes.set_title(panel.title)
 
 
 def _frame(axes: Axes, found: Sweep, kept: list[str], free: Modes | None, slow: bool) -> None:
@@ -187,13 +189,10 @@ def _frame(axes: Axes, found: Sweep, kept: list[str], free: Modes | None, slow: 
     ):
         margin = 0.08 * max(high - low, 1e-3)
         limit(low - 1.6 * margin, high + 1.6 * margin)
-    axes.axvline(0.0, color=style.INK, linewidth=0.8)
-    axes.axhline(0.0, color=style.INK, linewidth=0.8)
-    axes.grid(color=style.GUIDE, linewidth=0.6)
-    axes.set_axisbelow(True)
-    axes.set_xlabel("Re λ [1/s]", fontsize=style.FONT)
-    axes.set_ylabel("Im λ [rad/s]", fontsize=style.FONT)
-    axes.tick_params(labelsize=style.SMALL)
+    axes.axvline(0.0, color=style.INK, linewidth=style.THIN)
+    axes.axhline(0.0, color=style.INK, linewidth=style.THIN)
+    axes.set_xlabel("Re λ [1/s]")
+    axes.set_ylabel("Im λ [rad/s]")
 
 
 def _unbroken(roots: Complex, partner: np.ndarray) -> list[Complex]:
@@ -212,7 +211,7 @@ def _arrow(axes: Axes, roots: Complex) -> None:
             "",
             xy=(end.real, end.imag),
             xytext=(start.real, start.imag),
-            arrowprops={"arrowstyle": "-|>", "color": style.INK, "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0},
+            arrowprops={"arrowstyle": "-|>", "color": style.INK, "linewidth": style.THIN, "shrinkA": 0, "shrinkB": 0},
             annotation_clip=True,
         )
 
@@ -233,7 +232,7 @@ def _marks(axes: Axes, found: Sweep, kept: list[str], star: int | None, free: Mo
     if missing:
         handles.append(Line2D([], [], linestyle="none", label=f"{missing} of {len(found.outcomes)} points: no trim"))
     if handles:
-        axes.legend(handles=handles, fontsize=style.SMALL, loc="lower left", frameon=True, framealpha=0.85)
+        axes.legend(handles=handles, loc="lower left", frameon=True)
 
 
 def _named(axes: Axes, found: Sweep, kept: list[str]) -> None:
@@ -260,8 +259,7 @@ def _named(axes: Axes, found: Sweep, kept: list[str]) -> None:
             xytext=(float(x), float(y + rise)),
             textcoords="axes fraction",
             fontsize=style.SMALL,
-            color=style.INK,
             ha="center" if 0.1 < x < 0.9 else ("left" if x <= 0.1 else "right"),
-            arrowprops={"arrowstyle": "-", "color": style.BETWEEN, "linewidth": 0.5} if rise > 0.05 else None,
+            arrowprops={"arrowstyle": "-", "color": style.BETWEEN, "linewidth": style.HAIR} if rise > 0.05 else None,
             annotation_clip=True,
         )

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from jinja2 import Environment
 from markupsafe import Markup
-from plotly.offline import get_plotlyjs
 
+from tethership._extras import needs
 from tethership.view.report.content import VERDICTS, Cell, Figure, Section, Table
 from tethership.view.report.page_file import templates, write_page_text
 from tethership.view.report.parts import every_section, judged, labelled, looks, number_sections
@@ -78,10 +78,17 @@ def write_report(
             placed=placed,
             places=labelled(placed),
             footer={name: value for name, value in footer.items() if value is not None},
-            plotly=Markup(get_plotlyjs()) if explored else None,
+            plotly=_plotly() if explored else None,
         )
     )
     return write_page_text(path, page)
+
+
+def _plotly() -> Markup:
+    """Return the script that draws plots."""
+    with needs("plots"):
+        from plotly.offline import get_plotlyjs
+    return Markup(get_plotlyjs())
 
 
 @functools.cache

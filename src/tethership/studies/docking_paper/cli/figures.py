@@ -16,19 +16,16 @@ def figures(
     number: int, formulation: str | None, changes: dict[str, Any], out: Path
 ) -> tuple[dict[str, Any], list["Sweep"]]:
     """Return one figure of the paper in one formulation or both; writes figure_NN_FORMULATION.png and .html."""
+    from tethership.studies.docking_paper.view.linear_figures import interactive_linear_figure, plot_linear_figure
+    from tethership.view.linear.interactive_locus import page
+    from tethership.view.picture import png
+
     files, shown, sweeps = [], {}, []
     chosen = formulation or changes.get("formulation")
     for name in ("consistent", "published") if chosen is None else (chosen,):
         with stage(f"figure {number}, {name}"):
             drawn = linear_figure(number, name, changes)
         with stage("draw"):
-            from tethership.studies.docking_paper.view.linear_figures import (
-                interactive_linear_figure,
-                plot_linear_figure,
-            )
-            from tethership.view.linear.interactive_locus import page
-            from tethership.view.picture import png
-
             stem = f"figure_{number:02d}_{name}"
             picture, explored = png(plot_linear_figure(drawn), 120), page(interactive_linear_figure(drawn))
         files += map(str, write_together({out / f"{stem}.png": picture, out / f"{stem}.html": explored}))

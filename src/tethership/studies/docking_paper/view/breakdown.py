@@ -14,6 +14,7 @@ from tethership.simulation import Flight
 from tethership.studies.docking_paper.terms import load_breakdown
 from tethership.view import style
 from tethership.view.flight.loads import DECADES, KINDS, load_vectors
+from tethership.view.flight.ship_key import key_row
 from tethership.view.flight.snapshots import Snapshots, take_snapshots
 
 Array = NDArray[np.float64]
@@ -25,6 +26,7 @@ LEFT, TOP, BOTTOM, PANEL = 0.075, 1.3, 0.5, 1.35
 """Left margin over the figure's width [-]; upper and lower margin and height of a panel with its gap [inch]."""
 
 
+@style.styled
 def plot_breakdown(flight: Flight, figure: Figure | None = None) -> Figure:
     """Draw the size of each load over time [s]: forces [N] on the left, moments [N m] on the right, one row per load.
 
@@ -55,7 +57,6 @@ def plot_breakdown(flight: Flight, figure: Figure | None = None) -> Figure:
     count = len(load_sizes(flight, "force"))
     figure = Figure(figsize=(10.8, TOP + BOTTOM + PANEL * count)) if figure is None else figure
     figure.clear()
-    figure.set_facecolor("white")
     height = figure.get_figheight()
     low, high = BOTTOM / height, 1.0 - TOP / height
     grid = figure.add_gridspec(count, 2, left=LEFT, right=0.985, bottom=low, top=high, hspace=0.32, wspace=0.13)
@@ -67,11 +68,13 @@ def plot_breakdown(flight: Flight, figure: Figure | None = None) -> Figure:
             _draw(axes, snapshots.time, loads, name)
             _label(axes, name, numbers[kind][name])
             if snapshots.cables:
-                axes.axvline(numbers["time_of_peak"], color=style.END, linewidth=0.8, linestyle=(0, (4, 2)), gid="peak")
+                axes.axvline(
+                    numbers["time_of_peak"], color=style.END, linewidth=style.THIN, linestyle=(0, (4, 2)), gid="peak"
+                )
             if row == 0:
-                axes.set_title(title, fontsize=style.FONT + 1, color=style.INK, weight="bold", pad=18)
+                axes.set_title(title, loc="center", weight="bold", pad=18)
             axes.tick_params(labelbottom=row == count - 1)
-            axes.set_xlabel("time [s]" if row == count - 1 else "", fontsize=style.FONT)
+            axes.set_xlabel("time [s]" if row == count - 1 else "")
     _title(figure, snapshots, numbers)
     return figure
 
@@ -99,7 +102,7 @@ def _limits(loads: dict[str, Array]) -> tuple[float, float]:
 
 
 def _dress(axes: Axes, snapshots: Snapshots, limits: tuple[float, float]) -> None:
-    """Set both axes, the grid and the gusts' shades."""
+    """Set both axes and the gusts' shades."""
     time = snapshots.time
     axes.set_xlim(float(time[0]), max(float(time[-1]), float(time[0]) + 1e-3))
     axes.set_yscale("log", nonpositive="clip")
@@ -107,9 +110,6 @@ def _dress(axes: Axes, snapshots: Snapshots, limits: tuple[float, float]) -> Non
     axes.yaxis.set_major_locator(LogLocator(numticks=6))
     axes.yaxis.set_major_formatter("{x:g}")
     axes.yaxis.set_minor_formatter(NullFormatter())
-    axes.tick_params(labelsize=style.SMALL)
-    axes.grid(color=style.GUIDE, linewidth=0.5)
-    axes.set_axisbelow(True)
     for gust in snapshots.config.gusts:
         axes.axvspan(gust.start, gust.start + gust.period, facecolor=style.GUST, edgecolor="none", zorder=0, gid="gust")
 
@@ -122,7 +122,7 @@ def _draw(axes: Axes, time: Array, loads: dict[str, Array], name: str) -> None:
             time,
             value,
             color=_colour(name) if chosen else style.GUIDE,
-            linewidth=1.2 if chosen else 0.7,
+            linewidth=None if chosen else style.HAIR,
             zorder=3 if chosen else 1,
             gid=name if chosen else "other",
         )
@@ -132,8 +132,8 @@ def _label(axes: Axes, name: str, numbers: dict[str, Any]) -> None:
     """Write the load's name above its axes on the left, rms and peak on the right."""
     words = f"rms {_rounded(numbers['rms'])}, peak {_rounded(numbers['peak'])}" if numbers["peak"] > 0.0 else "zero"
     label = WORDS.get(name, name.replace("_", " "))
-    axes.text(0.0, 1.04, label, transform=axes.transAxes, fontsize=style.FONT, color=_colour(name), weight="bold")
-    axes.text(1.0, 1.04, words, transform=axes.transAxes, fontsize=style.SMALL, color=style.INK, ha="right")
+    axes.text(0.0, 1.04, label, transform=axes.transAxes, color=_colour(name), weight="bold")
+    axes.text(1.0, 1.04, words, transform=axes.transAxes, fontsize=style.SMALL, ha="right")
 
 
 def _rounded(value: float) -> str:
@@ -156,20 +156,12 @@ def _title(figure: Figure, snapshots: Snapshots, numbers: dict[str, Any]) -> Non
         f"{attributes['outcome'].replace('_', ' ')} after {snapshots.time[-1]:.1f} s",
     ]
     title = f"Loads: {snapshots.config.title}"
-    figure.text(LEFT, 1.0 - 0.2 / height, title, fontsize=style.FONT + 4, weight="bold", color=style.INK, va="center")
-    figure.text(LEFT, 1.0 - 0.44 / height, "  ·  ".join(parts), fontsize=style.FONT, color=style.INK, va="center")
+    figure.text(LEFT, 1.0 - 0.2 / height, title, fontsize=style.LARGE, weight="bold", va="center")
+    figure.text(LEFT, 1.0 - 0.44 / height, "  ·  ".join(parts), va="center")
     handles: list[Line2D | Patch] = [Line2D([], [], color=style.GUIDE, label="other loads")]
     if snapshots.cables:
         peak = f"largest tension, {_rounded(numbers['peak_tension'])} N at {numbers['time_of_peak']:.1f} s"
-        handles.append(Line2D([], [], color=style.END, linewidth=0.8, linestyle=(0, (4, 2)), label=peak))
+        handles.append(Line2D([], [], color=style.END, linewidth=style.THIN, linestyle=(0, (4, 2)), label=peak))
     if snapshots.config.gusts:
         handles.append(Patch(facecolor=style.GUST, label="gust"))
-    figure.legend(
-        handles=handles,
-        loc="center left",
-        bbox_to_anchor=(LEFT - 0.005, 1.0 - 0.66 / height),
-        ncols=len(handles),
-        fontsize=style.FONT,
-        frameon=False,
-        borderaxespad=0.0,
-    )
+    key_row(figure, handles, LEFT - 0.005, 1.0 - 0.66 / height)

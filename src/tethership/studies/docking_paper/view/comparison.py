@@ -19,7 +19,7 @@ from tethership.studies.docking_paper.view.ground_box import GroundBox, box_arou
 from tethership.view import style
 from tethership.view.flight.projection import View
 from tethership.view.flight.ship import ship_outlines
-from tethership.view.flight.ship_key import ship_keys
+from tethership.view.flight.ship_key import key_row, ship_keys
 from tethership.view.flight.snapshots import Snapshots, snapshot_indices, take_snapshots
 
 Array = NDArray[np.float64]
@@ -43,6 +43,7 @@ SHADOW = "#5C4A32"
 """The shadow of B on the ground: dark brown."""
 
 
+@style.styled
 def plot_comparison(flights: Mapping[str, Flight], title: str = "Trajectories compared") -> Figure:
     """Draw flights side by side, in parallel three-quarter views of one scale, as Fig. 15 of Riboldi et al.
 
@@ -81,7 +82,7 @@ def plot_comparison(flights: Mapping[str, Flight], title: str = "Trajectories co
     low, high = _limits(taken, box, view)
     tall = wide * (high[1] - low[1]) / (high[0] - low[0])
     height = HEAD + rows * (tall + CAPTION) + FOOT
-    figure = Figure(figsize=(wide * columns, height), facecolor="white")
+    figure = Figure(figsize=(wide * columns, height))
     for i, (name, snapshots) in enumerate(zip(flights, taken, strict=True)):
         row, column = divmod(i, columns)
         bottom = (FOOT + (rows - 1 - row) * (tall + CAPTION)) / height
@@ -158,14 +159,14 @@ def _draw_flight(axes: Axes, snapshots: Snapshots, view: View) -> None:
     path, ground = snapshots.path, snapshots.ground
     below = path * np.array([1.0, 1.0, 0.0]) - np.array([0.0, 0.0, ground])
     shadow, drawn = view.project(below), view.project(path)
-    axes.plot(*shadow.T, color=SHADOW, linewidth=1.0, zorder=1.5, gid="shadow")
+    axes.plot(*shadow.T, color=SHADOW, linewidth=style.THIN, zorder=1.5, gid="shadow")
     ends = [0, len(path) - 1]
     for end, colour in zip(ends, (style.START, style.END), strict=True):
-        axes.plot(*np.stack([drawn[end], shadow[end]]).T, color=colour, linewidth=0.8, linestyle=":", zorder=1.6)
+        axes.plot(*np.stack([drawn[end], shadow[end]]).T, color=colour, linewidth=style.THIN, linestyle=":", zorder=1.6)
     _draw_ships(axes, snapshots, view)
     for cable in range(len(snapshots.cables)):
         _draw_cable(axes, snapshots, cable, view)
-    axes.plot(*drawn.T, color=style.END, linewidth=1.3, zorder=5, gid="path")
+    axes.plot(*drawn.T, color=style.END, zorder=5, gid="path")
     axes.plot(*drawn[snapshots.indices].T, "o", color=style.END, markersize=2.6, zorder=5, gid="dots")
 
 
@@ -174,9 +175,9 @@ def _draw_ships(axes: Axes, snapshots: Snapshots, view: View) -> None:
     outlines = _outlines(snapshots, view)
     last = len(outlines) - 1
     for gid, colour, fill, width, chosen in (
-        ("ships", style.BETWEEN, 0.08, 0.6, range(1, last)),
-        ("start", style.START, 0.25, 1.2, range(min(last, 1))),
-        ("end", style.END, 0.25, 1.2, range(last, last + 1)),
+        ("ships", style.BETWEEN, 0.08, style.HAIR, range(1, last)),
+        ("start", style.START, 0.25, None, range(min(last, 1))),
+        ("end", style.END, 0.25, None, range(last, last + 1)),
     ):
         polygons = [polygon for i in chosen for polygon in outlines[i]]
         ships = PolyCollection(
@@ -198,14 +199,14 @@ def _draw_cable(axes: Axes, snapshots: Snapshots, cable: int, view: View) -> Non
     lines = LineCollection(
         list(view.project(curves)),
         colors=colour,
-        linewidths=0.9,
+        linewidths=style.THIN,
         linestyles=style.cable_line(cable),
         zorder=4,
         gid=f"cable {cable}",
     )
     axes.add_collection(lines, autolim=False)
     foot = np.array([anchor[0], anchor[1], -snapshots.ground])
-    axes.plot(*view.project(np.stack([anchor, foot])).T, color=style.INK, linewidth=1.5, zorder=2)
+    axes.plot(*view.project(np.stack([anchor, foot])).T, color=style.INK, zorder=2)
     axes.plot(*view.project(anchor), "^", color=style.INK, markersize=6, zorder=6, gid="anchor")
 
 
@@ -220,37 +221,29 @@ def _caption(axes: Axes, name: str, snapshots: Snapshots) -> None:
         "xycoords": "axes fraction",
         "textcoords": "offset points",
         "xy": (0.19 / (axes.bbox.width / axes.figure.dpi), 1.0),
-        "color": style.INK,
     }
-    axes.annotate(name, xytext=(0, 15), fontsize=style.FONT + 1, weight="bold", **where)
-    axes.annotate(words, xytext=(0, 3), fontsize=style.FONT, **where)
+    axes.annotate(name, xytext=(0, 15), weight="bold", **where)
+    axes.annotate(words, xytext=(0, 3), **where)
     if passed:
         limits = f"beyond limits: {', '.join(passed)}"
-        axes.annotate(limits, xytext=(0, -4), fontsize=style.FONT, va="top", zorder=8, **where)
+        axes.annotate(limits, xytext=(0, -4), va="top", zorder=8, **where)
 
 
 def _head(figure: Figure, title: str, snapshots: Snapshots) -> None:
     """Write the title and explain the views in one row below it."""
     width, height = figure.get_size_inches()
     left = 0.19 / width
-    figure.text(left, 1.0 - 0.24 / height, title, fontsize=style.FONT + 4, weight="bold", color=style.INK, va="center")
+    figure.text(left, 1.0 - 0.24 / height, title, fontsize=style.LARGE, weight="bold", va="center")
 
     handles: list[Patch | Line2D] = [
         *ship_keys(snapshots.interval),
-        Line2D([], [], color=style.END, linewidth=1.3, label="centre of buoyancy B"),
-        Line2D([], [], color=SHADOW, linewidth=1.0, label="its shadow"),
+        Line2D([], [], color=style.END, label="centre of buoyancy B"),
+        Line2D([], [], color=SHADOW, linewidth=style.THIN, label="its shadow"),
     ]
     if snapshots.cables:
         dashes = style.cable_line(0)
-        handles.append(Line2D([], [], color=style.cable_colour(0), linewidth=1.0, linestyle=dashes, label="cable"))
+        handles.append(
+            Line2D([], [], color=style.cable_colour(0), linewidth=style.THIN, linestyle=dashes, label="cable")
+        )
         handles.append(Line2D([], [], color=style.INK, marker="^", linestyle="none", label="anchor"))
-    figure.legend(
-        handles=handles,
-        loc="center left",
-        bbox_to_anchor=(left - 0.04 / width, 1.0 - 0.52 / height),
-        ncols=len(handles),
-        fontsize=style.FONT,
-        frameon=False,
-        borderaxespad=0.0,
-        columnspacing=1.8,
-    )
+    key_row(figure, handles, left - 0.04 / width, 1.0 - 0.52 / height)

@@ -15,6 +15,7 @@ def _words(name: str) -> str:
     return name.replace("_", " ")
 
 
+@style.styled
 def plot_marginals(fit: dict[str, Any]) -> Figure:
     """Draw where every unknown lies between its bounds, 0 … 1 [-]: the best vector, and 5–95 % of the set."""
     members = to_shares(np.array(fit["members"]))
@@ -30,20 +31,21 @@ def plot_marginals(fit: dict[str, Any]) -> Figure:
         axes.plot(best[row], row, "D", color=style.END, markersize=5.0)
         for place, value in ((-0.015, unknown.low), (1.015, unknown.high)):
             side = "right" if place < 0 else "left"
-            axes.text(place, row, f"{value:g}", ha=side, va="center", fontsize=style.FONT - 1, color="0.35")
-    axes.set_yticks(range(len(UNKNOWNS)), [f"{_words(u.name)} [{u.unit}]" for u in UNKNOWNS], fontsize=style.FONT)
+            axes.text(place, row, f"{value:g}", ha=side, va="center", fontsize=style.SMALL, color="0.35")
+    axes.set_yticks(range(len(UNKNOWNS)), [f"{_words(u.name)} [{u.unit}]" for u in UNKNOWNS])
     axes.tick_params(axis="y", pad=34, length=0)
     axes.set_xlim(0.0, 1.0)
     axes.set_xticks([])
+    axes.grid(False)
     axes.invert_yaxis()
     axes.set_title(
         f"Between the bounds: best vector (diamond) and 5–95 % of the set, {fit['formulation']}",
-        fontsize=style.FONT + 1,
     )
     axes.margins(x=0.0)
     return drawn
 
 
+@style.styled
 def plot_correlation(fit: dict[str, Any]) -> Figure:
     """Draw how the unknowns go together over the set that fits nearly as well: correlations [-]."""
     matrix = np.array(fit["correlation"])
@@ -51,25 +53,27 @@ def plot_correlation(fit: dict[str, Any]) -> Figure:
     drawn = Figure(figsize=(7.2, 6.4), layout="constrained")
     axes = drawn.subplots()
     image = axes.imshow(matrix, cmap="RdBu_r", vmin=-1.0, vmax=1.0)
-    axes.set_xticks(range(len(names)), names, rotation=45, ha="right", fontsize=style.FONT)
-    axes.set_yticks(range(len(names)), names, fontsize=style.FONT)
+    axes.grid(False)
+    axes.set_xticks(range(len(names)), names, rotation=45, ha="right")
+    axes.set_yticks(range(len(names)), names)
     for i, j in np.ndindex(matrix.shape):
         if i != j and abs(matrix[i, j]) >= 0.3:
             dark = abs(matrix[i, j]) > 0.7
             text = f"{matrix[i, j]:.1f}".replace("-", "−")
-            axes.text(j, i, text, ha="center", va="center", fontsize=style.FONT - 2, color="white" if dark else "black")
+            axes.text(j, i, text, ha="center", va="center", fontsize=style.SMALL, color="white" if dark else "black")
     drawn.colorbar(image, ax=axes, shrink=0.8, label="correlation")
-    axes.set_title(f"Correlation over {len(fit['members'])} vectors of the set", fontsize=style.FONT + 1)
+    axes.set_title(f"Correlation over {len(fit['members'])} vectors of the set")
     return drawn
 
 
+@style.styled
 def plot_residuals(fit: dict[str, Any]) -> Figure:
     """Draw computed over published [-] of every fitted number, by table and wind [m/s]."""
     metrics = list(dict.fromkeys(entry["metric"] for entry in fit["items"]))
     drawn = Figure(figsize=(8.4, 3.6), layout="constrained")
     axes = drawn.subplots()
     axes.axhspan(1 / 1.2, 1.2, color="0.9", zorder=0)
-    axes.axhline(1.0, color="0.5", linewidth=0.8)
+    axes.axhline(1.0, color="0.5", linewidth=style.THIN)
     marks = {"rewind": "o", "heading": "s", "navigation": "^"}
     for table, mark in marks.items():
         for wind, shade in ((6.0, style.START), (12.0, style.END)):
@@ -85,8 +89,8 @@ def plot_residuals(fit: dict[str, Any]) -> Figure:
         _words(metric).replace("seconds above.0", "time > 144 N").replace("seconds above.1", "time > 481 N")
         for metric in metrics
     ]
-    axes.set_xticks(range(len(metrics)), labels, fontsize=style.FONT)
-    axes.set_ylabel("computed / published", fontsize=style.FONT)
-    axes.legend(fontsize=style.FONT - 2, ncols=3, loc="best")
-    axes.set_title("Fitted numbers; the band is 20 %", fontsize=style.FONT + 1)
+    axes.set_xticks(range(len(metrics)), labels)
+    axes.set_ylabel("computed / published")
+    axes.legend(ncols=3, loc="best")
+    axes.set_title("Fitted numbers; the band is 20 %")
     return drawn

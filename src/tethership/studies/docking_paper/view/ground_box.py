@@ -95,14 +95,18 @@ def draw_box(axes: Axes, box: GroundBox, view: View) -> None:
     """Draw the ground with its grid, north and east along the nearer edges, altitudes at the leftmost corner [m]."""
     (south, west), (north, east) = box.low, box.high
     corners = np.stack([box.place(n, e) for n, e in ((south, west), (north, west), (north, east), (south, east))])
-    soil = Polygon(view.project(corners), facecolor=style.GROUND, edgecolor=style.BETWEEN, linewidth=0.8, zorder=0)
+    soil = Polygon(
+        view.project(corners), facecolor=style.GROUND, edgecolor=style.BETWEEN, linewidth=style.THIN, zorder=0
+    )
     soil.set_gid("soil")
     axes.add_patch(soil)
     norths = np.arange(south, north + 0.5 * box.step, box.step)
     easts = np.arange(west, east + 0.5 * box.step, box.step)
     lines = [np.stack([box.place(value, west), box.place(value, east)]) for value in norths]
     lines += [np.stack([box.place(south, value), box.place(north, value)]) for value in easts]
-    grid = LineCollection(list(view.project(np.stack(lines))), colors="white", linewidths=0.7, zorder=1, gid="grid")
+    grid = LineCollection(
+        list(view.project(np.stack(lines))), colors="white", linewidths=style.HAIR, zorder=1, gid="grid"
+    )
     axes.add_collection(grid, autolim=False)
     near_north, near_east = box.near(view)
     away = np.sign(box.near(view) - box.far(view))
@@ -123,7 +127,7 @@ def _draw_post(axes: Axes, box: GroundBox, view: View) -> None:
     """Draw the scale of altitudes [m]."""
     north, east = box.post(view)
     ends = view.project(np.stack([box.place(north, east), box.place(north, east, box.top)]))
-    axes.plot(*ends.T, color=style.BETWEEN, linewidth=0.8, zorder=1, gid="post")
+    axes.plot(*ends.T, color=style.BETWEEN, linewidth=style.THIN, zorder=1, gid="post")
     left = np.array([*(-view.plane[0, :2]), 0.0])
     for value in np.arange(box.step * np.ceil(box.ground / box.step), box.top + 0.5 * box.step, box.step):
         point = box.place(north, east, float(value))
@@ -135,7 +139,6 @@ def _draw_post(axes: Axes, box: GroundBox, view: View) -> None:
         xytext=(-12, 9),
         textcoords="offset points",
         fontsize=style.SMALL,
-        color=style.INK,
         ha="left",
     )
 
@@ -150,7 +153,6 @@ def _write(axes: Axes, view: View, point: Array, away: Array, text: str, gap: fl
         xytext=tuple(aside),
         textcoords="offset points",
         fontsize=style.SMALL,
-        color=style.INK,
         ha="center",
         va="center",
     )

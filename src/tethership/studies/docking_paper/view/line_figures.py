@@ -12,6 +12,7 @@ WINDOW = 1.5
 """Half width of the window about the largest peak [s]."""
 
 
+@style.styled
 def plot_line_comparison(case: Mapping[str, Any]) -> Figure:
     """Draw both tensions over the flight, and about the largest peak.
 
@@ -24,18 +25,16 @@ def plot_line_comparison(case: Mapping[str, Any]) -> Figure:
     drawn = Figure(figsize=(9.0, 3.0), layout="constrained")
     whole, near = drawn.subplots(1, 2, width_ratios=(2.0, 1.0))
     for axes in (whole, near):
-        axes.plot(time, dynamic, color=style.SERIES[1], linewidth=1.0, label="dynamic line (MoorDyn)")
-        axes.plot(time, static, color=style.SERIES[0], linewidth=1.0, label="quasi-static, as flown")
-        axes.set_xlabel("time [s]", fontsize=style.FONT)
-        axes.grid(color=style.GUIDE, linewidth=0.6)
-        axes.tick_params(labelsize=style.SMALL)
-    whole.set_ylabel("tension at the tether point [N]", fontsize=style.FONT)
+        axes.plot(time, dynamic, color=style.SERIES[1], linewidth=style.THIN, label="dynamic line (MoorDyn)")
+        axes.plot(time, static, color=style.SERIES[0], linewidth=style.THIN, label="quasi-static, as flown")
+        axes.set_xlabel("time [s]")
+    whole.set_ylabel("tension at the tether point [N]")
     whole.set_yscale("symlog", linthresh=20.0)
     whole.set_ylim(0.0, None)
-    whole.legend(fontsize=style.SMALL)
+    whole.legend()
     near.set_xlim(case["peak_time"] - WINDOW, case["peak_time"] + WINDOW)
     inside = np.abs(time - case["peak_time"]) < WINDOW
     near.set_ylim(0.0, 1.1 * max(static[inside].max(initial=1.0), dynamic[inside].max(initial=1.0)))
-    near.set_title("about the largest peak", fontsize=style.FONT)
-    drawn.suptitle(case["title"], fontsize=style.FONT + 1)
+    near.set_title("about the largest peak")
+    drawn.suptitle(case["title"])
     return drawn

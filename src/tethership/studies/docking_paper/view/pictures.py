@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib.figure
-import plotly.graph_objects as go
-from plotly.offline import get_plotlyjs
 
+from tethership._extras import needs
 from tethership.results.files import write_atomically, write_together
 from tethership.simulation import Flight
 from tethership.studies.docking_paper import FIGURES, linear_figure
@@ -20,11 +19,16 @@ from tethership.studies.docking_paper.study import flight_file, vehicle_name
 from tethership.studies.docking_paper.view.breakdown import plot_breakdown
 from tethership.studies.docking_paper.view.comparison import plot_comparison
 from tethership.studies.docking_paper.view.fit_figures import plot_correlation, plot_marginals, plot_residuals
-from tethership.studies.docking_paper.view.interactive_flight import interactive_flight, interactive_histories
 from tethership.studies.docking_paper.view.line_figures import plot_line_comparison
 from tethership.studies.docking_paper.view.linear_figures import interactive_linear_figure, plot_linear_figure
 from tethership.view.flight.docking import plot_docking
+from tethership.view.flight.interactive_histories import interactive_histories
 from tethership.view.picture import png
+from tethership.view.replay import write_replay
+
+with needs("plots"):
+    import plotly.graph_objects as go
+    from plotly.offline import get_plotlyjs
 
 DPI = 110
 """Of pictures."""
@@ -63,6 +67,11 @@ class _Pictures:
         write_atomically(figures / "plotly.min.js", get_plotlyjs())  # what all pages of the folder share
         self.files += [f"figures/{name}.json", f"figures/{name}.html"]
 
+    def replay(self, name: str, flights: dict[str, Flight]) -> None:
+        """Write a flight, by the name shown, as a page of its own, to be played in space."""
+        write_replay(flights, self.folder / "figures" / f"{name}.html")
+        self.files.append(f"figures/{name}.html")
+
     def result(self) -> dict[str, Any]:
         """Return what the job gives."""
         return {"files": self.files}
@@ -74,14 +83,9 @@ def linear_pictures(folder: Path, settings: Settings) -> dict[str, Any]:
     changes = {"vehicle": vehicle_name(settings.formulation)}
     for number in FIGURES:
         drawn = linear_figure(number, settings.formulation, changes)
-        pictures.png(f"figure_{number:02d}", plot_figure(drawn))
+        pictures.png(f"figure_{number:02d}", plot_linear_figure(drawn))
         pictures.plot(f"figure_{number:02d}", interactive_linear_figure(drawn))
     return pictures.result()
-
-
-def plot_figure(drawn: Any) -> matplotlib.figure.Figure:
-    """Return the picture of a linear figure."""
-    return plot_linear_figure(drawn)
 
 
 def docking_pictures(folder: Path, settings: Settings) -> dict[str, Any]:
@@ -97,7 +101,7 @@ def docking_pictures(folder: Path, settings: Settings) -> dict[str, Any]:
             continue
         title = f"Figure {number} of the paper, computed: {LAYER_WORDS[table]}, 12 m/s"
         pictures.png(f"figure_{number}", plot_docking(flights[table], title=title))
-        pictures.plot(f"figure_{number}", interactive_flight(flights[table], title))
+        pictures.replay(f"figure_{number}", {LAYER_WORDS[table]: flights[table]})
         pictures.plot(f"figure_{number}_histories", interactive_histories(flights[table]))
         pictures.png(f"loads_{table}", plot_breakdown(flights[table]))
     if flights:

@@ -7,8 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import plotly.io
-
+from tethership._extras import needs
 from tethership.studies.docking_paper.fit.fit_file import stored_fit
 from tethership.studies.docking_paper.jobs import Settings, load_part
 from tethership.studies.docking_paper.linear_figures import FIGURES
@@ -17,6 +16,9 @@ from tethership.studies.docking_paper.tables import counts
 from tethership.studies.docking_paper.view import report_tables as tables
 from tethership.studies.docking_paper.view.pictures import DOCKING_FIGURES, LAYER_WORDS
 from tethership.view.report.report import Figure, Section, write_report
+
+with needs("plots"):
+    import plotly.io
 
 PAPER = "Riboldi, Croce, Pagani, He, Bortolini, Airship dynamics in a tethered docking maneuver"
 
@@ -207,6 +209,8 @@ def _docking(study: _Study) -> Section | None:
     if part is None and not figures:
         return None
     words = ["The docking under the three control logics, and what the text of section 4 says of it."]
+    if figures:
+        words.append("Beside this page `figures/figure_12.html` to `figures/figure_14.html` play the flights in space.")
     shown = (
         [] if part is None else [tables.claims_table(part["claims"], "Claims D1–D11 of section 4.", "docking_claims")]
     )
