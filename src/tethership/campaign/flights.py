@@ -109,7 +109,7 @@ def _prepared(
         found = nearby_equilibrium(problem, start)
         state, command = problem.unpack(found)
         loop = build_loop(here, plant, command)
-        vector = loop.initial(moved_start(here, plant, state))
+        vector = loop.initial(moved_start(here.start, plant, state))
         return loop, vector, jnp.max(jnp.abs(problem.balance(found)))
 
     example = eqx.filter_eval_shape(one, jax.ShapeDtypeStruct(values.shape[:1], values.dtype))

@@ -190,6 +190,10 @@ class TetheredAirship(eqx.Module):
         )
         return dataclasses.replace(self, environment=self.environment.without_fluctuations(), cables=cables)
 
+    def with_a_gust(self) -> "TetheredAirship":
+        """Return the plant in air that has a gust, a silent one where there is none: one structure, one program."""
+        return dataclasses.replace(self, environment=self.environment.with_a_gust())
+
     def with_winches_held(self) -> "TetheredAirship":
         """Return the plant with winches that take in nothing by themselves; what laws ask they still do."""
         cables = tuple(

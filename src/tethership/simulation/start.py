@@ -14,7 +14,8 @@ from tethership.errors import ConfigError
 from tethership.plant import ClosedLoop, Command, State, TetheredAirship
 from tethership.plant.balance import DRIFT_LIMIT, drift, left_over, residual, residual_limit
 from tethership.plant.layout import parts as part_layout
-from tethership.scenario import Scenario, ScenarioConfig
+from tethership.scenario import Scenario
+from tethership.scenario.schema import StartConfig
 from tethership.simulation.events import StopConditions
 from tethership.spatial import rotation_matrix
 
@@ -46,12 +47,11 @@ def start_state(scenario: Scenario, trimmed: State) -> State:
     trimmed : State
         State at trim.
     """
-    return _moved(scenario.config.as_arrays(), scenario.system, trimmed)
+    return _moved(scenario.config.start.as_arrays(), scenario.system.with_a_gust(), trimmed)
 
 
-def moved_start(config: ScenarioConfig, plant: TetheredAirship, trimmed: State) -> State:
-    """Return `start_state` of a configuration and its plant; can be traced."""
-    start = config.start
+def moved_start(start: StartConfig, plant: TetheredAirship, trimmed: State) -> State:
+    """Return `start_state` of a scenario's table and its plant; can be traced."""
     held = plant.cables[0].tether_point if start.hold == "tether_point" and plant.cables else jnp.zeros(3)
     attitude = trimmed.attitude + jnp.asarray(start.attitude_offset)
     before, after = rotation_matrix(trimmed.attitude), rotation_matrix(attitude)
@@ -111,7 +111,8 @@ def check_point(scenario: Scenario, point: Start) -> None:
     check_parts(scenario, point)
     turning = scenario.config.turning()
     given = None if turning is None else jnp.asarray(turning)
-    left, moving = (np.asarray(part) for part in _balance(scenario.system, point.state, point.command, given))
+    found = _balance(scenario.system.with_a_gust(), point.state, point.command, given)
+    left, moving = (np.asarray(part) for part in found)
     limit = 10.0 * float(residual_limit(scenario.system))
     worst = max(np.abs(left).max() / limit, np.abs(moving).max() / (10.0 * DRIFT_LIMIT))
     if not worst <= 1.0:
