@@ -138,6 +138,6 @@ def fly_ticks(
         margins=margins,
         steps=carry.steps,
         sample_times=times.reshape(-1)[chosen],
-        samples={name: value.reshape(-1, *value.shape[2:])[chosen] for name, value in outputs.items()},
+        samples={name: value.reshape(chosen.size, *value.shape[2:])[chosen] for name, value in outputs.items()},
         last=last,
     )
