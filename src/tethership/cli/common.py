@@ -1,16 +1,15 @@
-"""What all commands share: the scenario argument, common flags, JSON and stages. Depends on: scenario, typer."""
+"""What all commands share: the scenario argument, common flags, JSON, provenance. Depends on: scenario, typer."""
 
-import contextlib
 import json
 import math
-import sys
+import platform
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from tethership._version import __version__
 from tethership.cli.completion import complete_formulation, complete_line, complete_parameter, complete_scenario
 from tethership.errors import ConfigError, shown, suggestion
 from tethership.results.files import check_writable
@@ -150,11 +149,6 @@ def json_text(result: dict[str, Any]) -> str:
     return json.dumps(_plain(result))
 
 
-def print_json(result: dict[str, Any]) -> None:
-    """Print one JSON object on standard output."""
-    typer.echo(json_text(result))
-
-
 def _plain(value: Any) -> Any:
     """Return a value as JSON can hold it."""
     if isinstance(value, dict):
@@ -170,17 +164,17 @@ def _plain(value: Any) -> Any:
     return value
 
 
-@contextlib.contextmanager
-def stage(name: str) -> Iterator[None]:
-    """Show a stage of the work and the time it took, on standard error of a terminal."""
-    start = time.perf_counter()
-    if sys.stderr.isatty():
-        typer.echo(f"  {name} …", err=True, nl=False)
-    try:
-        yield
-    finally:
-        if sys.stderr.isatty():
-            typer.echo(f"\r  {name:<28} {time.perf_counter() - start:6.2f} s", err=True)
+def provenance(**of: Any) -> dict[str, Any]:
+    """Return versions and time of a report, with what it is of."""
+    import jax
+
+    return {
+        "tethership": __version__,
+        **of,
+        "jax": jax.__version__,
+        "python": platform.python_version(),
+        "written": time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime()),
+    }
 
 
 def writable_folder(folder: Path) -> Path:

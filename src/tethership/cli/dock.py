@@ -17,8 +17,9 @@ from tethership.cli.common import (
     chosen_scenario,
     writable_folder,
 )
-from tethership.cli.flown import LayersOption, NoSasOption, SolverOption, Stages, again, split, summary, tell
+from tethership.cli.flown import LayersOption, NoSasOption, SolverOption, again, split, summary, tell
 from tethership.cli.points import trimmed_start
+from tethership.cli.progress import flying
 from tethership.cli.tables import CsvOption, writable_csv
 from tethership.errors import ConfigError
 from tethership.scenario.load import read_solver
@@ -71,9 +72,6 @@ def dock(
         trim_outcome = point.outcome.name
         from tethership.simulation import dock as fly
 
-        stages = Stages(flown_scenario.config.stop.time_limit)
-        flight = fly(flown_scenario, point, names, False if no_sas else None, solver, stages)
-        stages.done()
-        if point.saturated:
-            typer.echo(f"tethership: warning: the start is no equilibrium. {point.message}", err=True)
+        with flying(flown_scenario.config.stop.time_limit) as reached:
+            flight = fly(flown_scenario, point, names, False if no_sas else None, solver, reached)
     tell(flown_scenario, flight, trim_outcome, out, "docking.png", csv, json)

@@ -6,7 +6,8 @@ from typing import Annotated
 
 import typer
 
-from tethership.cli.common import JsonOption, print_json
+from tethership.cli.common import JsonOption
+from tethership.cli.result import Result, show
 from tethership.errors import ConfigError
 
 EXAMPLE = "Example: tethership export windy/flight.nc --to mat"
@@ -40,10 +41,7 @@ def export(
         raise ConfigError(f"{flight} is a folder, not a flight; name a flight.nc that `dock` wrote")
     path = _path(flight, to, out)
     write_table(Flight.load(flight).to_frame(), path, to)
-    if json:
-        print_json({"files": [str(path)]})
-    else:
-        typer.echo(f"wrote {path}")
+    show(Result({}, files=[str(path)]), json)
 
 
 def _path(flight: Path, to: Format, out: Path | None) -> Path:

@@ -16,12 +16,12 @@ from tethership.cli.common import (
     WindOption,
     chosen_scenario,
     json_text,
-    print_json,
-    stage,
     writable_folder,
 )
-from tethership.cli.points import clearance_rows, point_keys, warn
-from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
+from tethership.cli.points import clearance_rows, point_keys
+from tethership.cli.progress import stage
+from tethership.cli.result import Result, show
+from tethership.cli.tables import CsvOption, Row, Table, writable_csv
 from tethership.results.files import write_atomically
 from tethership.scenario import Scenario
 
@@ -68,7 +68,7 @@ def trim(
         name: float(np.degrees(value)) if name in ANGLES else float(value)
         for name, value in zip(STATE_NAMES, values, strict=True)
     }
-    result = point_keys(point) | {
+    document = point_keys(point) | {
         "throttle": point.command.throttle,
         "deflection": np.degrees(point.command.deflection),
         "tension": point.tension,
@@ -79,16 +79,10 @@ def trim(
         "line": loaded.config.line_models(),
     }
     if folder is not None:
-        write_atomically(folder / "trim.json", json_text(result))
-    rows = _rows(loaded, point, state)
-    write_rows(csv, rows)
-    if json:
-        print_json(result)
-    else:
-        print_table(rows, f"{point.outcome.name}: {point.message}")
-        warn(point.warnings)
-    if point.outcome is not TrimOutcome.converged:
-        raise typer.Exit(NO_ANSWER)
+        write_atomically(folder / "trim.json", json_text(document))
+    table = Table(_rows(loaded, point, state), f"{point.outcome.name}: {point.message}")
+    code = 0 if point.outcome is TrimOutcome.converged else NO_ANSWER
+    show(Result(document, tables=[table], warnings=point.warnings, code=code), json, csv)
 
 
 def _rows(loaded: Scenario, point: "TrimPoint", state: dict[str, float]) -> list[Row]:

@@ -13,11 +13,11 @@ from tethership.cli.common import (
     ScenarioArgument,
     SetOption,
     chosen_scenario,
-    print_json,
     writable_folder,
 )
 from tethership.cli.progress import progress_bar
-from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
+from tethership.cli.result import Result, show
+from tethership.cli.tables import CsvOption, Row, Table, writable_csv
 from tethership.errors import ConfigError
 from tethership.results.files import write_together
 
@@ -66,16 +66,15 @@ def tune(
             lambda what, share, least: report(f"{what}, cost {least:.3f}", share),
         )
     document = tuning_document(found, loaded, seed, flights)
-    document["files"] = [
-        *_written(document, scenario, changes, out),
-        *write_rows(csv, [*_gains(document), *_effects(document)]),
-    ]
-    if json:
-        print_json(document)
-    else:
-        _print(document)
-    if found.after.undocked >= 1.0:
-        raise typer.Exit(NO_ANSWER)
+    gains = f"gains for {document['wind']:g} m/s, formulation {document['formulation']}"
+    effects = f"over {document['flights']} perturbed flights"
+    result = Result(
+        document,
+        tables=[Table(_gains(document), gains), Table(_effects(document), effects)],
+        files=_written(document, scenario, changes, out),
+        code=NO_ANSWER if found.after.undocked >= 1.0 else 0,
+    )
+    show(result, json, csv)
 
 
 def _written(document: dict[str, Any], name: str, changes: list[str] | None, out: Path) -> list[str]:
@@ -131,11 +130,3 @@ def _effects(document: dict[str, Any]) -> list[Row]:
         Row(text, factor * after[key], unit, ".4g", f"  (before {factor * before[key]:.4g})")
         for key, (text, factor, unit) in EFFECTS.items()
     ]
-
-
-def _print(document: dict[str, Any]) -> None:
-    """Print gains and what they do."""
-    print_table(_gains(document), f"gains for {document['wind']:g} m/s, formulation {document['formulation']}")
-    print_table(_effects(document), f"over {document['flights']} perturbed flights")
-    for path in document["files"]:
-        typer.echo(f"wrote {path}")

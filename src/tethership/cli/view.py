@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tethership.cli.common import NO_ANSWER, JsonOption, print_json, stage
+from tethership.cli.common import NO_ANSWER, JsonOption
+from tethership.cli.progress import stage
+from tethership.cli.result import Result, show
 from tethership.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -39,10 +41,7 @@ def view(
     page = _page(files, list(named), out)
     with stage("write"):
         write_replay(named, page)
-    if json:
-        print_json({"file": str(page), "flights": [str(file) for file in files]})
-    else:
-        typer.echo(f"wrote {page}")
+    show(Result({"file": str(page), "flights": [str(file) for file in files]}, f"wrote {page}"), json)
     if not no_open:
         _open(page)
 
