@@ -15,8 +15,8 @@ from tethership.cli.common import (
     SetOption,
     TrustOption,
     WindOption,
+    flag_changes,
     line_change,
-    parsed_changes,
     provenance,
 )
 from tethership.cli.completion import complete_campaign
@@ -75,7 +75,7 @@ def campaign(
     writable_csv(csv)
     begun = time.perf_counter()
     with progress_bar(f"campaign {Path(name).stem}", resumed=True) as report:
-        varied = _scenario_changes(wind, formulation, changes, line)
+        varied = flag_changes(wind, formulation, changes) | line_change(line)
         try:
             found = run_campaign(name, folder, own, varied, workers, scheduler, confidence, _counted(report), trust)
         except KeyboardInterrupt:
@@ -102,18 +102,6 @@ def _counted(report: Report) -> Callable[[int, int], None]:
         report(f"{done} of {total} flights{words}", done / total)
 
     return progress
-
-
-def _scenario_changes(
-    wind: float | None, formulation: str | None, changes: list[str] | None, line: str | None
-) -> dict[str, Any]:
-    """Return the scenario's changes by the flags."""
-    found = parsed_changes(changes)
-    if wind is not None:
-        found["wind.speed"] = wind
-    if formulation is not None:
-        found["formulation"] = formulation
-    return found if line is None else found | line_change(line)
 
 
 def _concluded(found: Any, folder: Path) -> tuple[dict[str, Any], list[str]]:

@@ -4,6 +4,7 @@ import json
 import math
 import platform
 import time
+from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -95,18 +96,9 @@ def chosen_scenario(
     ConfigError
         As `load_scenario`, or a change that is not `key=value`.
     """
-    values = parsed_changes(changes)
-    if wind is not None:
-        if "wind.speed" in values:
-            raise ConfigError("--wind and --set wind.speed both say what the wind is; give one of them")
-        values["wind.speed"] = wind
-    if formulation is not None:
-        values["formulation"] = formulation
-    return with_line(load_scenario(name, values, trust), line)
-
-
-def with_line(scenario: Scenario, line: str | None) -> Scenario:
-    """Return a scenario with the model of every cable's line; raises ConfigError for an unknown one, or no cable."""
+    if wind is not None and "wind.speed" in parsed_changes(changes):
+        raise ConfigError("--wind and --set wind.speed both say what the wind is; give one of them")
+    scenario = load_scenario(name, flag_changes(wind, formulation, changes), trust)
     if line is None:
         return scenario
     change = line_change(line)
@@ -115,9 +107,17 @@ def with_line(scenario: Scenario, line: str | None) -> Scenario:
     return scenario.changed(change)
 
 
-def line_change(line: str) -> dict[str, Any]:
+def flag_changes(wind: float | None, formulation: str | None, changes: list[str] | None) -> dict[str, Any]:
+    """Return the changes of --set, --wind [m/s] and --formulation by dotted names; a flag of its own wins."""
+    flags = {"wind.speed": wind, "formulation": formulation}
+    return parsed_changes(changes) | {name: value for name, value in flags.items() if value is not None}
+
+
+def line_change(line: str | None) -> dict[str, Any]:
     """Return the change that gives every cable a model of its line; raises ConfigError for an unknown one."""
     models = tuple(LINES.values())
+    if line is None:
+        return {}
     if line not in models:
         raise ConfigError(f"--line {shown(line)} is no line{suggestion(line, models)} Allowed: {', '.join(models)}")
     return {"cables.*.line": {"model": line}}
@@ -175,6 +175,17 @@ def provenance(**of: Any) -> dict[str, Any]:
         "python": platform.python_version(),
         "written": time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime()),
     }
+
+
+def named_file(out: Path | None, beside: Path, endings: Collection[str], refusal: str) -> Path:
+    """Return where a file is written: `beside` another, in the folder `out`, or by a name with one of the endings."""
+    if out is None:
+        return beside
+    if out.is_dir() or not out.suffix:
+        return out / beside.name
+    if out.suffix.lower() not in endings:
+        raise ConfigError(f"--out {out} is no {refusal}, or a folder")
+    return out
 
 
 def writable_folder(folder: Path) -> Path:

@@ -20,8 +20,8 @@ from tethership.cli.common import (
     TrustOption,
     WindOption,
     chosen_scenario,
+    flag_changes,
     pair,
-    parsed_changes,
     writable_folder,
 )
 from tethership.cli.completion import complete_parameter
@@ -80,7 +80,7 @@ def sweep(
             raise ConfigError(f"--figure has its own scenarios; leave out {scenario!r}, or change values with --set")
         writable_folder(out)
         writable_csv(csv)
-        document, found = studied("figures")(figure, formulation, _set(wind, changes), out)
+        document, found = studied("figures")(figure, formulation, flag_changes(wind, None, changes), out)
     else:
         loaded = chosen_scenario(scenario, wind, formulation, changes, line, trust)
         axes = [_axis(loaded, text) for text in over or []]
@@ -98,11 +98,6 @@ def sweep(
         code=NO_ANSWER if none else 0,
     )
     show(result, json, csv)
-
-
-def _set(wind: float | None, changes: list[str] | None) -> dict[str, Any]:
-    """Return the changes of --set and --wind."""
-    return parsed_changes(changes) | ({} if wind is None else {"wind.speed": wind})
 
 
 def _swept(
