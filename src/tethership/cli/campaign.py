@@ -8,7 +8,6 @@ from typing import Annotated, Any
 import typer
 
 from tethership.cli.common import (
-    NO_ANSWER,
     FormulationOption,
     JsonOption,
     LineOption,
@@ -18,11 +17,12 @@ from tethership.cli.common import (
     flag_changes,
     line_change,
     provenance,
+    writable,
 )
 from tethership.cli.completion import complete_campaign
 from tethership.cli.progress import Pace, Report, progress_bar
 from tethership.cli.result import Result, show
-from tethership.cli.tables import CsvOption, Row, Table, writable_csv
+from tethership.cli.tables import CsvOption, Row, Table
 from tethership.errors import ConfigError, SolveError
 from tethership.scenario.names import check_title
 
@@ -72,7 +72,7 @@ def campaign(
         key: value for key, value in (("samples", samples), ("seed", seed), ("sampling", sampling)) if value is not None
     }
     folder = _own_folder(name) if out is None else out
-    writable_csv(csv)
+    writable(None, csv)
     begun = time.perf_counter()
     with progress_bar(f"campaign {Path(name).stem}", resumed=True) as report:
         varied = flag_changes(wind, formulation, changes) | line_change(line)
@@ -163,7 +163,6 @@ def _shown(result: dict[str, Any]) -> list[tuple[str, list[Row]]]:
 def _told(document: dict[str, Any], files: list[str]) -> Result:
     """Return probabilities, times and verdicts, and no answer where no flight has a result."""
     most = max(document["outcomes"], key=lambda name: document["outcomes"][name])
-    none = document["failed"] == document["runs"]
     flown = f"{document['runs']} flights, {document['failed']} failed, {document['seconds']:.0f} s"
     return Result(
         document,
@@ -171,6 +170,6 @@ def _told(document: dict[str, Any], files: list[str]) -> Result:
         [Table(rows, title) for title, rows in _shown(document)],
         Table(_numbers(document)),
         files=files,
-        failure=f"no flight has a result ({most}): nothing can be said of the odds" if none else "",
-        code=NO_ANSWER if none else 0,
+        answered=document["failed"] < document["runs"],
+        reason=f"no flight has a result ({most}): nothing can be said of the odds",
     )

@@ -12,6 +12,7 @@ import typer
 
 from tethership._version import __version__
 from tethership.cli.completion import complete_formulation, complete_line, complete_parameter, complete_scenario
+from tethership.cli.tables import check_csv
 from tethership.errors import ConfigError, shown, suggestion
 from tethership.results.files import check_writable
 from tethership.scenario import Scenario, load_scenario
@@ -115,9 +116,9 @@ def flag_changes(wind: float | None, formulation: str | None, changes: list[str]
 
 def line_change(line: str | None) -> dict[str, Any]:
     """Return the change that gives every cable a model of its line; raises ConfigError for an unknown one."""
-    models = tuple(LINES.values())
     if line is None:
         return {}
+    models = tuple(LINES.values())
     if line not in models:
         raise ConfigError(f"--line {shown(line)} is no line{suggestion(line, models)} Allowed: {', '.join(models)}")
     return {"cables.*.line": {"model": line}}
@@ -188,12 +189,14 @@ def named_file(out: Path | None, beside: Path, endings: Collection[str], refusal
     return out
 
 
-def writable_folder(folder: Path) -> Path:
-    """Return the folder; raises ConfigError before any work if nothing can be written there. Nothing is made yet."""
+def writable(out: Path | None, csv: Path | None) -> None:
+    """Raise ConfigError before any work if folder or table cannot be written. Nothing is made yet."""
     try:
-        check_writable(folder)
+        if out is not None:
+            check_writable(out)
     except OSError as error:
         raise ConfigError(
-            f"cannot write into {folder}: {error.strerror or error}; choose another folder with --out"
+            f"cannot write into {out}: {error.strerror or error}; choose another folder with --out"
         ) from error
-    return folder
+    if csv is not None:
+        check_csv(csv)

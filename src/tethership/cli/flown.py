@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tethership.cli.common import NO_ANSWER
 from tethership.cli.completion import complete_layers, complete_solver
 from tethership.cli.progress import flying, stage
 from tethership.cli.result import Result, show
@@ -71,7 +70,7 @@ def tell(
         lines=[f"{flight.verdict[0].upper()}{flight.verdict[1:]}. {flight.outcome.value}"],
         files=written,
         warnings=flight.warnings,
-        code=0 if flight.outcome.is_answer else NO_ANSWER,
+        answered=flight.outcome.is_answer,
     )
     show(result, json, csv)
 

@@ -15,12 +15,12 @@ from tethership.cli.common import (
     TrustOption,
     WindOption,
     chosen_scenario,
-    writable_folder,
+    writable,
 )
 from tethership.cli.flown import LayersOption, NoSasOption, SolverOption, split, tell
 from tethership.cli.points import trimmed_start
 from tethership.cli.progress import flying
-from tethership.cli.tables import CsvOption, writable_csv
+from tethership.cli.tables import CsvOption
 from tethership.errors import ConfigError
 from tethership.scenario.load import read_solver
 
@@ -60,8 +60,7 @@ def fly(
     names = None if layers is None else split(layers)
     loaded.law(names)  # a wrong name is found before anything is computed
     read_solver(solver)
-    writable_folder(out)
-    writable_csv(csv)
+    writable(out, csv)
     point = trimmed_start(loaded, json)
     from tethership.simulation import fly as flown
 

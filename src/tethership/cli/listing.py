@@ -4,10 +4,10 @@ from typing import Annotated, Any
 
 import typer
 
-from tethership.cli.common import JsonOption, ScenarioOption
+from tethership.cli.common import JsonOption, ScenarioOption, writable
 from tethership.cli.completion import complete_kind, complete_scenario
 from tethership.cli.result import Result, show
-from tethership.cli.tables import Cell, CsvOption, Table, writable_csv
+from tethership.cli.tables import Cell, CsvOption, Table
 from tethership.errors import ConfigError, shown, suggestion
 from tethership.results.schema import VARIABLES
 from tethership.scenario import list_parameters, load_scenario
@@ -50,7 +50,7 @@ def list_(
         raise ConfigError(f"only parameters are a scenario's; write tethership list parameters {named[0]}")
     if len(set(named)) > 1:
         raise ConfigError(f"two scenarios are named, {of} and --scenario {scenario}; name one")
-    writable_csv(csv)
+    writable(None, csv)
     if kind == "outputs":
         result = _named(kind, _outputs())
     elif kind == "parameters":

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tethership.cli.common import (
-    NO_ANSWER,
     FormulationOption,
     JsonOption,
     LineOption,
@@ -17,12 +16,12 @@ from tethership.cli.common import (
     WindOption,
     chosen_scenario,
     json_text,
-    writable_folder,
+    writable,
 )
 from tethership.cli.points import balanced, clearance_line, point_keys
 from tethership.cli.progress import stage
 from tethership.cli.result import Result, show
-from tethership.cli.tables import Cell, CsvOption, Table, writable_csv
+from tethership.cli.tables import Cell, CsvOption, Table
 from tethership.errors import ConfigError, suggestion
 from tethership.results.files import write_together
 
@@ -69,8 +68,7 @@ def modes(
 
     _check(part, loop, sensitivity)
     loaded = chosen_scenario(scenario, wind, formulation, changes, line, trust)
-    writable_csv(csv)
-    folder = None if out is None else writable_folder(out)
+    writable(out, csv)
     point = balanced(loaded, json)
     with stage("linearise"):
         model = _part(linearize(loaded, point, loop=loop), part)
@@ -95,11 +93,17 @@ def modes(
             f"  {len(ranked.rows)} parameters; --json has all. {missing} have no derivative "
             "(no trim beside, or a corner)."
         ]
-    if folder is not None:
-        _write(folder, model, document)
-    met = point.outcome is TrimOutcome.converged
-    failure, code = ("", 0) if met else (point.message, NO_ANSWER)
-    show(Result(document, "", tables, None, lines, None, head["warnings"], failure, code), json, csv)
+    if out is not None:
+        _write(out, model, document)
+    result = Result(
+        document,
+        tables=tables,
+        lines=lines,
+        warnings=head["warnings"],
+        answered=point.outcome is TrimOutcome.converged,
+        reason=point.message,
+    )
+    show(result, json, csv)
 
 
 def _check(part: str, loop: str, sensitivity: str | None) -> None:

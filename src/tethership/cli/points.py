@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from tethership.cli.common import NO_ANSWER
 from tethership.cli.progress import stage
 from tethership.cli.result import Result, show
 from tethership.cli.tables import Row
@@ -61,5 +60,5 @@ def _trimmed(scenario: Scenario, as_json: bool, serves: Callable[["TrimOutcome"]
         point = trim(scenario)
     if not serves(point.outcome):
         document = point_keys(point) | {"residual": point.residual}
-        show(Result(document, failure=point.message, code=NO_ANSWER), as_json)
+        show(Result(document, answered=False, reason=point.message), as_json)
     return point

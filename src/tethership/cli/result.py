@@ -7,7 +7,7 @@ from typing import Any
 
 import typer
 
-from tethership.cli.common import json_text
+from tethership.cli.common import NO_ANSWER, json_text
 from tethership.cli.tables import Table, print_table, write_rows
 
 
@@ -31,10 +31,10 @@ class Result:
         Written files, told as `files` in the document too; None where the document does not name them.
     warnings : sequence of str
         What must be known before the result is used; the document has them under a key of its own.
-    failure : str
-        Why there is no answer, one line.
-    code : int
-        With which the command ends.
+    answered : bool
+        Where not, the command ends with `NO_ANSWER`, else with 0.
+    reason : str
+        Why there is no answer, one line; said only where there is none.
     """
 
     document: dict[str, Any]
@@ -44,12 +44,12 @@ class Result:
     lines: Sequence[str] = ()
     files: Sequence[str] | None = None
     warnings: Sequence[str] = ()
-    failure: str = ""
-    code: int = 0
+    answered: bool = True
+    reason: str = ""
 
 
 def show(result: Result, as_json: bool, csv: Path | None = None) -> None:
-    """Tell a result as one JSON object or for people, write its table, and exit where its code is not 0.
+    """Tell a result as one JSON object or for people, write its table, and exit where there is no answer.
 
     Raises
     ------
@@ -69,10 +69,10 @@ def show(result: Result, as_json: bool, csv: Path | None = None) -> None:
             typer.echo(line)
         for line in result.warnings:
             typer.echo(f"tethership: warning: {line}", err=True)
-    if result.failure:
-        typer.echo(f"tethership: {result.failure}", err=True)
-    if result.code:
-        raise typer.Exit(result.code)
+    if not result.answered:
+        if result.reason:
+            typer.echo(f"tethership: {result.reason}", err=True)
+        raise typer.Exit(NO_ANSWER)
 
 
 def _write_csv(path: Path | None, result: Result) -> list[str]:

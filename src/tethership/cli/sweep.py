@@ -10,7 +10,6 @@ import typer
 
 from tethership._studies import studied
 from tethership.cli.common import (
-    NO_ANSWER,
     FormulationOption,
     JsonOption,
     LineOption,
@@ -22,13 +21,13 @@ from tethership.cli.common import (
     chosen_scenario,
     flag_changes,
     pair,
-    writable_folder,
+    writable,
 )
 from tethership.cli.completion import complete_parameter
 from tethership.cli.points import clearance_line
 from tethership.cli.progress import stage
 from tethership.cli.result import Result, show
-from tethership.cli.tables import CsvOption, Table, writable_csv
+from tethership.cli.tables import CsvOption, Table
 from tethership.errors import ConfigError, shown
 from tethership.results.files import write_together
 from tethership.scenario import Scenario
@@ -78,24 +77,21 @@ def sweep(
     if figure is not None:
         if scenario != "docking":
             raise ConfigError(f"--figure has its own scenarios; leave out {scenario!r}, or change values with --set")
-        writable_folder(out)
-        writable_csv(csv)
+        writable(out, csv)
         document, found = studied("figures")(figure, formulation, flag_changes(wind, None, changes), out)
     else:
         loaded = chosen_scenario(scenario, wind, formulation, changes, line, trust)
         axes = [_axis(loaded, text) for text in over or []]
-        writable_folder(out)
-        writable_csv(csv)
+        writable(out, csv)
         document, found = _swept(loaded, axes, out, loop)
-    none = not any(one.trimmed.any() for one in found)
     result = Result(
         document,
         data=_table(found),
         lines=[line for one in found for line in _lines(one)],
         files=document["files"],
         warnings=[line for one in found for line in sweep_warnings(one)],
-        failure=f"no point could be trimmed. {found[0].outcomes[0].value}" if none else "",
-        code=NO_ANSWER if none else 0,
+        answered=any(one.trimmed.any() for one in found),
+        reason=f"no point could be trimmed. {found[0].outcomes[0].value}",
     )
     show(result, json, csv)
 

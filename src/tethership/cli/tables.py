@@ -122,13 +122,8 @@ def print_table(
     typer.echo("\n".join([title] * bool(title) + [f"  {line}".rstrip() for line in drawn.get().splitlines()]))
 
 
-def writable_csv(path: Path | None) -> Path | None:
-    """Return the path if a CSV file can be written there; raises ConfigError before any work if not.
-
-    Nothing is made yet, and a file that is there is not touched.
-    """
-    if path is None:
-        return None
+def check_csv(path: Path) -> None:
+    """Raise ConfigError if no CSV file can be written there; a file that is there is not touched."""
     if path.is_dir():
         raise ConfigError(f"--csv {path} is a folder; name a file, e.g. --csv {path / 'table.csv'}")
     if path.suffix.lower() not in (".csv", ".txt"):
@@ -139,7 +134,6 @@ def writable_csv(path: Path | None) -> Path | None:
             raise PermissionError(errno.EACCES, "it is there and may not be changed")
     except OSError as error:
         raise ConfigError(f"cannot write --csv {path}: {error.strerror or error}; name another file") from error
-    return path
 
 
 def write_rows(path: Path | None, rows: Iterable[Sequence[Any]], columns: Sequence[str] = QUANTITIES) -> list[str]:

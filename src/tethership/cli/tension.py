@@ -15,10 +15,10 @@ from tethership.cli.common import (
     WindOption,
     chosen_scenario,
     json_text,
-    writable_folder,
+    writable,
 )
 from tethership.cli.result import Result, show
-from tethership.cli.tables import Cell, CsvOption, Row, Table, writable_csv
+from tethership.cli.tables import Cell, CsvOption, Row, Table
 from tethership.errors import ConfigError, SolveError
 from tethership.results.files import write_atomically
 from tethership.results.limits import ratios_passed
@@ -72,15 +72,14 @@ def tension(
     reach = chosen.length if length is None else length
     if not reach > 0:
         raise ConfigError(f"--length is {reach:g}; it must be above 0 m")
-    writable_csv(csv)
-    folder = None if out is None else writable_folder(out)
+    writable(out, csv)
     place = np.array(chosen.anchor if anchor is None else anchor)
     between = _Line(loaded, index, np.array(end), place, reach, anchor is not None)
     with np.errstate(all="ignore"):  # what is not finite is told by _check_finite
         document = _computed(between, np.array(velocity), wind_vector, points)
         _check_finite(between, document["tension"])
-    if folder is not None:
-        write_atomically(folder / "tension.json", json_text(document))
+    if out is not None:
+        write_atomically(out / "tension.json", json_text(document))
     tables = [Table(_rows(document), f"cable {chosen.name!r}, {reach:g} m, formulation {loaded.formulation}")]
     if points is not None:
         tables.append(_curve(document))

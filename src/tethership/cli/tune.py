@@ -6,18 +6,17 @@ from typing import Annotated, Any
 import typer
 
 from tethership.cli.common import (
-    NO_ANSWER,
     FormulationOption,
     JsonOption,
     OutOption,
     ScenarioArgument,
     SetOption,
     chosen_scenario,
-    writable_folder,
+    writable,
 )
 from tethership.cli.progress import progress_bar
 from tethership.cli.result import Result, show
-from tethership.cli.tables import CsvOption, Row, Table, writable_csv
+from tethership.cli.tables import CsvOption, Row, Table
 from tethership.errors import ConfigError
 from tethership.results.files import write_together
 
@@ -53,8 +52,7 @@ def tune(
     if searched > flights:
         raise ConfigError(f"--searched {searched} is more than the {flights} flights there are; lower it")
     loaded = chosen_scenario(scenario, wind, formulation, changes)
-    writable_folder(out)
-    writable_csv(csv)
+    writable(out, csv)
     with progress_bar("tune") as report:
         found = search(
             loaded,
@@ -72,7 +70,7 @@ def tune(
         document,
         tables=[Table(_gains(document), gains), Table(_effects(document), effects)],
         files=_written(document, scenario, changes, out),
-        code=NO_ANSWER if found.after.undocked >= 1.0 else 0,
+        answered=found.after.undocked < 1.0,
     )
     show(result, json, csv)
 

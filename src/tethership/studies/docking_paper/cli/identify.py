@@ -12,11 +12,11 @@ from tethership.cli.common import (
     ScenarioArgument,
     SetOption,
     chosen_scenario,
-    writable_folder,
+    writable,
 )
 from tethership.cli.progress import progress_bar
 from tethership.cli.result import Result, show
-from tethership.cli.tables import CsvOption, Row, Table, writable_csv
+from tethership.cli.tables import CsvOption, Row, Table
 from tethership.errors import ConfigError
 from tethership.results.files import write_together
 
@@ -60,8 +60,7 @@ def identify(
     _check(loaded)
     if 2**power < population:
         raise ConfigError(f"2^{power} Sobol points are fewer than the population of {population}; raise --power")
-    writable_folder(out)
-    writable_csv(csv)
+    writable(out, csv)
     budget = Budget(power, population, generations, rounds, left_out)
     with progress_bar("identify") as report:
         found = fit(loaded, budget, seed, lambda what, share, least: report(f"{what}, misfit {least:.3f}", share))

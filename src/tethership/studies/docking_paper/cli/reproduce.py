@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tethership.cli.common import JsonOption, json_text, provenance, writable_folder
+from tethership.cli.common import JsonOption, json_text, provenance, writable
 from tethership.cli.progress import progress_bar
 from tethership.cli.result import Result, show
-from tethership.cli.tables import CsvOption, Table, writable_csv
+from tethership.cli.tables import CsvOption, Table
 from tethership.errors import ConfigError, suggestion
 from tethership.results.files import write_atomically
 from tethership.results.lock import held
@@ -69,8 +69,7 @@ def reproduce(
 
     jobs = _chosen(only)
     settings = Settings(_formulation(formulation), flights=flights, seed=seed)
-    writable_folder(out)
-    writable_csv(csv)
+    writable(out, csv)
     begun = time.perf_counter()
     with held(out), progress_bar("reproduce") as report:
         anew = run_jobs(jobs, out, settings, report, fresh)
