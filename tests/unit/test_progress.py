@@ -1,4 +1,4 @@
-"""Progress: on a terminal stages and bars; elsewhere nothing for short work, for long a plain line with the time left."""
+"""Progress: stages and bars on a terminal; elsewhere nothing for short work, a plain line now and then for long."""
 
 import re
 import sys

@@ -73,33 +73,21 @@ def modes(
     with stage("linearise"):
         model = _part(linearize(loaded, point, loop=loop), part)
         found = model.modes()
-    head = {
-        "wind": loaded.config.wind.speed,
-        "formulation": loaded.formulation,
-        "line": loaded.config.line_models(),
-        "loop": loop,
-        "sample_time": model.sample_time or None,
-        "warnings": [*point.warnings, *model.attributes.get("warnings", ())],
-    }
-    document = point_keys(point) | head | summary(model, found)
+    document = _head(loaded, point, model, loop) | summary(model, found)
     tables, lines = [_table(found, _title(loaded, point))], []
     if sensitivity is not None:
         with stage("sensitivities"):
             ranked = sensitivities(loaded, sensitivity, point)
         document["sensitivity"] = _ranked(ranked)
         tables.append(_ranked_table(ranked))
-        missing = sum(row.derivative is None for row in ranked.rows)
-        lines = [
-            f"  {len(ranked.rows)} parameters; --json has all. {missing} have no derivative "
-            "(no trim beside, or a corner)."
-        ]
+        lines.append(_count(ranked))
     if out is not None:
         _write(out, model, document)
     result = Result(
         document,
         tables=tables,
         lines=lines,
-        warnings=head["warnings"],
+        warnings=document["warnings"],
         answered=point.outcome is TrimOutcome.converged,
         reason=point.message,
     )
@@ -140,6 +128,18 @@ def _part(model: "LinearModel", part: str) -> "LinearModel":
             return model.lateral()
         case _:
             return model
+
+
+def _head(scenario: "Scenario", point: "TrimPoint", model: "LinearModel", loop: str) -> dict[str, Any]:
+    """Return what was linearised, SI."""
+    return point_keys(point) | {
+        "wind": scenario.config.wind.speed,
+        "formulation": scenario.formulation,
+        "line": scenario.config.line_models(),
+        "loop": loop,
+        "sample_time": model.sample_time or None,
+        "warnings": [*point.warnings, *model.attributes.get("warnings", ())],
+    }
 
 
 def summary(model: "LinearModel", found: "Modes") -> dict[str, Any]:
@@ -218,3 +218,10 @@ def _ranked_table(table: "Sensitivities") -> Table:
     ]
     heads = ("parameter", "value", "unit", "step", "shift of λ [1/s]")
     return Table(rows, f"\n{table.message}; ranked by what an ordinary step does", heads, heads)
+
+
+def _count(table: "Sensitivities") -> str:
+    """Return how many parameters there are, and how many cannot be ranked."""
+    missing = sum(row.derivative is None for row in table.rows)
+    note = f"{missing} have no derivative (no trim beside, or a corner)."
+    return f"  {len(table.rows)} parameters; --json has all. {note}"

@@ -86,7 +86,7 @@ def _cells(row: Sequence[Any]) -> list[Cell]:
     """Return the cells of a row."""
     if isinstance(row, Row):
         row = (row.name, Cell(row.value, format(row.value, row.spec)), row.unit, row.note.strip())
-    return [value if isinstance(value, Cell) else Cell(value, str(value)) for value in row]
+    return [value if isinstance(value, Cell) else Cell(value, "" if value is None else str(value)) for value in row]
 
 
 def print_table(
