@@ -1,10 +1,12 @@
-"""Progress where there is no terminal: nothing for short work, a plain line with the time left for long."""
+"""Progress: stages and bars on a terminal; elsewhere nothing for short work, a plain line now and then for long."""
 
+import re
+import sys
 import time
 
 from tethership.cli import progress
 from tethership.cli.campaign import _counted
-from tethership.cli.progress import progress_bar
+from tethership.cli.progress import flying, progress_bar, stage
 
 
 def test_short_work_is_quiet_and_long_work_says_how_far_it_is(capsys, monkeypatch):
@@ -49,3 +51,26 @@ def test_where_nothing_moves_no_time_is_promised(capsys, monkeypatch):
         "fit: 50 %, evolution, 50 s, 50 s left",
         "fit: 50 %, evolution, 120 s",
     ]
+
+
+def fly_and_draw():
+    with flying(60.0) as reached:
+        reached(15.0)
+        reached(60.0)
+    with stage("draw"):
+        pass
+
+
+def test_stages_are_quiet_where_there_is_no_terminal(capsys):
+    fly_and_draw()
+    assert capsys.readouterr() == ("", "")
+
+
+def test_stages_on_a_terminal_leave_the_time_they_took(capsys, monkeypatch):
+    """A flight compiles until it first tells how far it is; standard output stays for the result."""
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    fly_and_draw()
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert re.findall(r"^.*?(\w+) +\d+\.\d\d s$", err, re.MULTILINE) == ["compile", "fly", "draw"]

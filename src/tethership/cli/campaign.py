@@ -1,6 +1,5 @@
 """`tethership campaign`: many flights, resumable, and what they say."""
 
-import platform
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -8,22 +7,22 @@ from typing import Annotated, Any
 
 import typer
 
-from tethership._version import __version__
 from tethership.cli.common import (
-    NO_ANSWER,
     FormulationOption,
     JsonOption,
     LineOption,
     SetOption,
     TrustOption,
     WindOption,
+    flag_changes,
     line_change,
-    parsed_changes,
-    print_json,
+    provenance,
+    writable,
 )
 from tethership.cli.completion import complete_campaign
 from tethership.cli.progress import Pace, Report, progress_bar
-from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
+from tethership.cli.result import Result, show
+from tethership.cli.tables import CsvOption, Row, Table
 from tethership.errors import ConfigError, SolveError
 from tethership.scenario.names import check_title
 
@@ -73,25 +72,16 @@ def campaign(
         key: value for key, value in (("samples", samples), ("seed", seed), ("sampling", sampling)) if value is not None
     }
     folder = _own_folder(name) if out is None else out
-    writable_csv(csv)
+    writable(None, csv)
     begun = time.perf_counter()
     with progress_bar(f"campaign {Path(name).stem}", resumed=True) as report:
-        varied = _scenario_changes(wind, formulation, changes, line)
+        varied = flag_changes(wind, formulation, changes) | line_change(line)
         try:
             found = run_campaign(name, folder, own, varied, workers, scheduler, confidence, _counted(report), trust)
         except KeyboardInterrupt:
             raise SolveError(f"interrupted; what is flown is in {folder}: run the same command to go on") from None
-    result = _concluded(found, folder)
-    result["files"] += write_rows(csv, _numbers(result))
-    result["seconds"] = round(time.perf_counter() - begun, 1)
-    if json:
-        print_json(result)
-    else:
-        _print(result)
-    if result["failed"] == result["runs"]:
-        most = max(result["outcomes"], key=lambda name: result["outcomes"][name])
-        typer.echo(f"tethership: no flight has a result ({most}): nothing can be said of the odds", err=True)
-        raise typer.Exit(NO_ANSWER)
+    document, files = _concluded(found, folder)
+    show(_told(document | {"seconds": round(time.perf_counter() - begun, 1)}, files), json, csv)
 
 
 def _own_folder(name: str) -> Path:
@@ -114,26 +104,15 @@ def _counted(report: Report) -> Callable[[int, int], None]:
     return progress
 
 
-def _scenario_changes(
-    wind: float | None, formulation: str | None, changes: list[str] | None, line: str | None
-) -> dict[str, Any]:
-    """Return the scenario's changes by the flags."""
-    found = parsed_changes(changes)
-    if wind is not None:
-        found["wind.speed"] = wind
-    if formulation is not None:
-        found["formulation"] = formulation
-    return found if line is None else found | line_change(line)
-
-
-def _concluded(found: Any, folder: Path) -> dict[str, Any]:
-    """Return what the flights say, with the files it was written to."""
+def _concluded(found: Any, folder: Path) -> tuple[dict[str, Any], list[str]]:
+    """Return what the flights say, and the files it was written to."""
     from tethership.view.campaign.report import write_campaign
 
     plan, answers = found.plan, found.answers
-    written = write_campaign(folder, plan, found.data, answers, _footer(plan))
+    footer = provenance(campaign=plan.name, digest=plan.digest()[:16])
+    written = write_campaign(folder, plan, found.data, answers, footer)
     first = next(iter(answers["laws"].values()))
-    return {
+    document = {
         "campaign": plan.name,
         "formulation": plan.scenario.formulation,
         "line": plan.scenario.config.line_models(),
@@ -141,22 +120,8 @@ def _concluded(found: Any, folder: Path) -> dict[str, Any]:
         **answers,
         "exceedance": first["exceedance"],
         "outcomes": first["outcomes"],
-        "files": [*map(str, written), str(folder / "results.zarr")],
     }
-
-
-def _footer(plan: Any) -> dict[str, Any]:
-    """Return versions and provenance."""
-    import jax
-
-    return {
-        "tethership": __version__,
-        "campaign": plan.name,
-        "digest": plan.digest()[:16],
-        "jax": jax.__version__,
-        "python": platform.python_version(),
-        "written": time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime()),
-    }
+    return document, [*map(str, written), str(folder / "results.zarr")]
 
 
 def _numbers(result: dict[str, Any]) -> list[Row]:
@@ -195,10 +160,16 @@ def _shown(result: dict[str, Any]) -> list[tuple[str, list[Row]]]:
     return [*found, ("requirements", rows)] if rows else found
 
 
-def _print(result: dict[str, Any]) -> None:
-    """Print probabilities, times and verdicts."""
-    typer.echo(f"{result['campaign']}: {result['runs']} flights, {result['failed']} failed, {result['seconds']:.0f} s")
-    for title, rows in _shown(result):
-        print_table(rows, title)
-    for path in result["files"]:
-        typer.echo(f"wrote {path}")
+def _told(document: dict[str, Any], files: list[str]) -> Result:
+    """Return probabilities, times and verdicts, and no answer where no flight has a result."""
+    most = max(document["outcomes"], key=lambda name: document["outcomes"][name])
+    flown = f"{document['runs']} flights, {document['failed']} failed, {document['seconds']:.0f} s"
+    return Result(
+        document,
+        f"{document['campaign']}: {flown}",
+        [Table(rows, title) for title, rows in _shown(document)],
+        Table(_numbers(document)),
+        files=files,
+        answered=document["failed"] < document["runs"],
+        reason=f"no flight has a result ({most}): nothing can be said of the odds",
+    )

@@ -1,17 +1,18 @@
-"""What all commands share: the scenario argument, common flags, JSON and stages. Depends on: scenario, typer."""
+"""What all commands share: the scenario argument, common flags, JSON, provenance. Depends on: scenario, typer."""
 
-import contextlib
 import json
 import math
-import sys
+import platform
 import time
-from collections.abc import Iterator
+from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from tethership._version import __version__
 from tethership.cli.completion import complete_formulation, complete_line, complete_parameter, complete_scenario
+from tethership.cli.tables import check_csv
 from tethership.errors import ConfigError, shown, suggestion
 from tethership.results.files import check_writable
 from tethership.scenario import Scenario, load_scenario
@@ -96,18 +97,9 @@ def chosen_scenario(
     ConfigError
         As `load_scenario`, or a change that is not `key=value`.
     """
-    values = parsed_changes(changes)
-    if wind is not None:
-        if "wind.speed" in values:
-            raise ConfigError("--wind and --set wind.speed both say what the wind is; give one of them")
-        values["wind.speed"] = wind
-    if formulation is not None:
-        values["formulation"] = formulation
-    return with_line(load_scenario(name, values, trust), line)
-
-
-def with_line(scenario: Scenario, line: str | None) -> Scenario:
-    """Return a scenario with the model of every cable's line; raises ConfigError for an unknown one, or no cable."""
+    if wind is not None and "wind.speed" in parsed_changes(changes):
+        raise ConfigError("--wind and --set wind.speed both say what the wind is; give one of them")
+    scenario = load_scenario(name, flag_changes(wind, formulation, changes), trust)
     if line is None:
         return scenario
     change = line_change(line)
@@ -116,8 +108,16 @@ def with_line(scenario: Scenario, line: str | None) -> Scenario:
     return scenario.changed(change)
 
 
-def line_change(line: str) -> dict[str, Any]:
+def flag_changes(wind: float | None, formulation: str | None, changes: list[str] | None) -> dict[str, Any]:
+    """Return the changes of --set, --wind [m/s] and --formulation by dotted names; a flag of its own wins."""
+    flags = {"wind.speed": wind, "formulation": formulation}
+    return parsed_changes(changes) | {name: value for name, value in flags.items() if value is not None}
+
+
+def line_change(line: str | None) -> dict[str, Any]:
     """Return the change that gives every cable a model of its line; raises ConfigError for an unknown one."""
+    if line is None:
+        return {}
     models = tuple(LINES.values())
     if line not in models:
         raise ConfigError(f"--line {shown(line)} is no line{suggestion(line, models)} Allowed: {', '.join(models)}")
@@ -150,11 +150,6 @@ def json_text(result: dict[str, Any]) -> str:
     return json.dumps(_plain(result))
 
 
-def print_json(result: dict[str, Any]) -> None:
-    """Print one JSON object on standard output."""
-    typer.echo(json_text(result))
-
-
 def _plain(value: Any) -> Any:
     """Return a value as JSON can hold it."""
     if isinstance(value, dict):
@@ -170,25 +165,38 @@ def _plain(value: Any) -> Any:
     return value
 
 
-@contextlib.contextmanager
-def stage(name: str) -> Iterator[None]:
-    """Show a stage of the work and the time it took, on standard error of a terminal."""
-    start = time.perf_counter()
-    if sys.stderr.isatty():
-        typer.echo(f"  {name} …", err=True, nl=False)
-    try:
-        yield
-    finally:
-        if sys.stderr.isatty():
-            typer.echo(f"\r  {name:<28} {time.perf_counter() - start:6.2f} s", err=True)
+def provenance(**of: Any) -> dict[str, Any]:
+    """Return versions and time of a report, with what it is of."""
+    import jax
+
+    return {
+        "tethership": __version__,
+        **of,
+        "jax": jax.__version__,
+        "python": platform.python_version(),
+        "written": time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime()),
+    }
 
 
-def writable_folder(folder: Path) -> Path:
-    """Return the folder; raises ConfigError before any work if nothing can be written there. Nothing is made yet."""
+def named_file(out: Path | None, beside: Path, endings: Collection[str], refusal: str) -> Path:
+    """Return where a file is written: `beside` another, in the folder `out`, or by a name with one of the endings."""
+    if out is None:
+        return beside
+    if out.is_dir() or not out.suffix:
+        return out / beside.name
+    if out.suffix.lower() not in endings:
+        raise ConfigError(f"--out {out} is no {refusal}, or a folder")
+    return out
+
+
+def writable(out: Path | None, csv: Path | None) -> None:
+    """Raise ConfigError before any work if folder or table cannot be written. Nothing is made yet."""
     try:
-        check_writable(folder)
+        if out is not None:
+            check_writable(out)
     except OSError as error:
         raise ConfigError(
-            f"cannot write into {folder}: {error.strerror or error}; choose another folder with --out"
+            f"cannot write into {out}: {error.strerror or error}; choose another folder with --out"
         ) from error
-    return folder
+    if csv is not None:
+        check_csv(csv)

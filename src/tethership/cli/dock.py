@@ -15,11 +15,12 @@ from tethership.cli.common import (
     TrustOption,
     WindOption,
     chosen_scenario,
-    writable_folder,
+    writable,
 )
-from tethership.cli.flown import LayersOption, NoSasOption, SolverOption, Stages, again, split, summary, tell
+from tethership.cli.flown import LayersOption, NoSasOption, SolverOption, again, split, summary, tell
 from tethership.cli.points import trimmed_start
-from tethership.cli.tables import CsvOption, writable_csv
+from tethership.cli.progress import flying
+from tethership.cli.tables import CsvOption
 from tethership.errors import ConfigError
 from tethership.scenario.load import read_solver
 
@@ -56,8 +57,7 @@ def dock(
     if from_ is not None and from_.resolve() == (out / "flight.nc").resolve():
         raise ConfigError(f"--from {from_} would be overwritten; choose another folder with --out")
     if from_ is not None:
-        writable_folder(out)
-        writable_csv(csv)
+        writable(out, csv)
         flown_scenario, flight = again(from_, trust)
         trim_outcome = "stored"
     else:
@@ -65,15 +65,11 @@ def dock(
         names = None if layers is None else split(layers)
         flown_scenario.law(names)  # a wrong name is found before anything is computed
         read_solver(solver)
-        writable_folder(out)
-        writable_csv(csv)
+        writable(out, csv)
         point = trimmed_start(flown_scenario, json)
         trim_outcome = point.outcome.name
         from tethership.simulation import dock as fly
 
-        stages = Stages(flown_scenario.config.stop.time_limit)
-        flight = fly(flown_scenario, point, names, False if no_sas else None, solver, stages)
-        stages.done()
-        if point.saturated:
-            typer.echo(f"tethership: warning: the start is no equilibrium. {point.message}", err=True)
+        with flying(flown_scenario.config.stop.time_limit) as reached:
+            flight = fly(flown_scenario, point, names, False if no_sas else None, solver, reached)
     tell(flown_scenario, flight, trim_outcome, out, "docking.png", csv, json)

@@ -10,7 +10,8 @@ from typing import Annotated
 import typer
 
 from tethership._extras import needs
-from tethership.cli.common import JsonOption, ScenarioArgument, print_json
+from tethership.cli.common import JsonOption, ScenarioArgument
+from tethership.cli.result import Result, show
 from tethership.errors import ConfigError
 
 EXAMPLE = "Example: tethership explore docking --port 8050"
@@ -49,11 +50,10 @@ def explore(
     explorer = Explorer(name, place, port)
 
     def ready() -> None:
-        if json:
-            said = {"address": explorer.address, "server": explorer.base, "cookie": explorer.ticket.cookie}
-            print_json({**said, "folder": str(explorer.folder), "pid": os.getpid()})
-        else:
-            typer.echo(f"tethership explore: {explorer.address} (files in {explorer.folder}; Ctrl-C ends it)")
+        said = {"address": explorer.address, "server": explorer.base, "cookie": explorer.ticket.cookie}
+        said |= {"folder": str(explorer.folder), "pid": os.getpid()}
+        words = f"tethership explore: {explorer.address} (files in {explorer.folder}; Ctrl-C ends it)"
+        show(Result(said, words), json)
         sys.stdout.flush()
         if not no_open and not _opened(explorer.address, Path(private)):
             typer.echo(f"tethership: no browser was found; open {explorer.address} yourself", err=True)

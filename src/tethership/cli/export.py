@@ -6,7 +6,8 @@ from typing import Annotated
 
 import typer
 
-from tethership.cli.common import JsonOption, print_json
+from tethership.cli.common import JsonOption, named_file
+from tethership.cli.result import Result, show
 from tethership.errors import ConfigError
 
 EXAMPLE = "Example: tethership export windy/flight.nc --to mat"
@@ -38,21 +39,7 @@ def export(
 
     if flight.is_dir():
         raise ConfigError(f"{flight} is a folder, not a flight; name a flight.nc that `dock` wrote")
-    path = _path(flight, to, out)
+    refusal = f"name for --to {to}: give one that ends in .{to}"
+    path = named_file(out, flight.with_name(f"{flight.stem}.{to}"), (f".{to}",), refusal)
     write_table(Flight.load(flight).to_frame(), path, to)
-    if json:
-        print_json({"files": [str(path)]})
-    else:
-        typer.echo(f"wrote {path}")
-
-
-def _path(flight: Path, to: Format, out: Path | None) -> Path:
-    """Return where the table is written."""
-    name = f"{flight.stem}.{to}"
-    if out is None:
-        return flight.with_name(name)
-    if out.is_dir() or not out.suffix:
-        return out / name
-    if out.suffix.lower() != f".{to}":
-        raise ConfigError(f"--out {out} is no name for --to {to}: give one that ends in .{to}, or a folder")
-    return out
+    show(Result({}, files=[str(path)]), json)

@@ -6,8 +6,9 @@ from typing import Annotated
 
 import typer
 
-from tethership.cli.common import JsonOption, print_json
+from tethership.cli.common import JsonOption
 from tethership.cli.completion import complete_scenario
+from tethership.cli.result import Result, show
 from tethership.errors import ConfigError
 from tethership.results.files import write_atomically
 from tethership.scenario.load import check_file, packaged_text, read_document
@@ -23,10 +24,7 @@ def validate(
 ) -> None:
     """Check a file: every key, unit and value, and whether the parts fit together."""
     kind = _checked(file)
-    if json:
-        print_json({"file": file, "valid": True, "kind": kind})
-    else:
-        typer.echo(f"{file}: a valid {kind}")
+    show(Result({"file": file, "valid": True, "kind": kind}, f"{file}: a valid {kind}"), json)
 
 
 def _checked(file: str) -> str:
@@ -65,8 +63,4 @@ def new(
             raise ConfigError(f"{path} exists already; nothing is overwritten: choose another name or folder")
     for path, content in texts.items():
         write_atomically(path, content, new=True)
-    if json:
-        print_json({"files": [str(path) for path in texts]})
-    else:
-        for path in texts:
-            typer.echo(f"wrote {path}")
+    show(Result({}, files=[str(path) for path in texts]), json)

@@ -1,16 +1,14 @@
 """What the commands that fly have in common: options, progress, files, metrics. Depends on: typer."""
 
-import sys
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tethership.cli.common import NO_ANSWER, print_json, stage
 from tethership.cli.completion import complete_layers, complete_solver
-from tethership.cli.points import warn
-from tethership.cli.tables import Row, print_table, write_rows
+from tethership.cli.progress import flying, stage
+from tethership.cli.result import Result, show
+from tethership.cli.tables import Row, Table
 from tethership.results.files import write_together
 from tethership.scenario import Scenario
 
@@ -36,41 +34,12 @@ def split(layers: str) -> tuple[str, ...]:
     return () if names == ("none",) else names
 
 
-class Stages:
-    """Progress of a flight on a terminal: compiling until the first call, then flying."""
-
-    def __init__(self, limit: float) -> None:
-        self.limit = limit
-        self.start = time.perf_counter()
-        self.compiled = False
-        self.shown = sys.stderr.isatty()
-        if self.shown:
-            typer.echo("  compile …", err=True, nl=False)
-
-    def __call__(self, reached: float) -> None:
-        """Show the time reached [s]."""
-        if not self.shown:
-            return
-        if not self.compiled:
-            self.compiled = True
-            typer.echo(f"\r  {'compile':<28} {time.perf_counter() - self.start:6.2f} s", err=True)
-            self.start = time.perf_counter()
-        typer.echo(f"\r  fly: {reached:7.1f} s of at most {self.limit:.0f} s", err=True, nl=False)
-
-    def done(self) -> None:
-        """Close the line."""
-        if self.shown:
-            typer.echo(f"\r  {'fly':<28} {time.perf_counter() - self.start:6.2f} s      ", err=True)
-
-
 def again(path: Path, trust: bool) -> tuple[Scenario, "Flight"]:
     """Return scenario and flight of a stored input."""
     from tethership.simulation import fly_again
 
-    stages = Stages(float("inf"))
-    scenario, flight = fly_again(path, stages, trust)
-    stages.done()
-    return scenario, flight
+    with flying() as reached:
+        return fly_again(path, reached, trust)
 
 
 def tell(
@@ -94,16 +63,16 @@ def tell(
         Print one JSON object and nothing else.
     """
     written = _written(flight, out, picture)
-    result = summary(scenario, flight) | {"trim_outcome": trim_outcome}
-    rows = _rows(result, flight)
-    result["files"] = [*written, *write_rows(csv, rows)]
-    if json:
-        print_json(result)
-    else:
-        _print(result, flight, rows)
-        warn(flight.warnings)
-    if not flight.outcome.is_answer:
-        raise typer.Exit(NO_ANSWER)
+    document = summary(scenario, flight) | {"trim_outcome": trim_outcome}
+    result = Result(
+        document,
+        tables=[Table(_rows(document, flight), _title(document, flight))],
+        lines=[f"{flight.verdict[0].upper()}{flight.verdict[1:]}. {flight.outcome.value}"],
+        files=written,
+        warnings=flight.warnings,
+        answered=flight.outcome.is_answer,
+    )
+    show(result, json, csv)
 
 
 def _written(flight: "Flight", out: Path, name: str) -> list[str]:
@@ -187,13 +156,10 @@ def _rows(result: dict[str, Any], flight: "Flight") -> list[Row]:
     ]
 
 
-def _print(result: dict[str, Any], flight: "Flight", rows: list[Row]) -> None:
-    """Print the metrics as a table."""
+def _title(result: dict[str, Any], flight: "Flight") -> str:
+    """Return what was flown, in a line: wind [m/s], laws, formulation."""
     rewinds = (flight.attributes.get("stop") or {"rewind": True})["rewind"]
     none = "constant rewind" if rewinds else "winches hold" if flight.config.cables else "no layers"
     layers = " + ".join(result["layers"]) or none
     sas = "SAS, " if result["sas"] else ""
-    print_table(rows, f"wind {result['wind']:g} m/s, {sas}{layers}, formulation {result['formulation']}")
-    typer.echo(f"{flight.verdict[0].upper()}{flight.verdict[1:]}. {flight.outcome.value}")
-    for path in result["files"]:
-        typer.echo(f"wrote {path}")
+    return f"wind {result['wind']:g} m/s, {sas}{layers}, formulation {result['formulation']}"

@@ -15,11 +15,12 @@ from tethership.cli.common import (
     TrustOption,
     WindOption,
     chosen_scenario,
-    writable_folder,
+    writable,
 )
-from tethership.cli.flown import LayersOption, NoSasOption, SolverOption, Stages, split, tell
+from tethership.cli.flown import LayersOption, NoSasOption, SolverOption, split, tell
 from tethership.cli.points import trimmed_start
-from tethership.cli.tables import CsvOption, writable_csv
+from tethership.cli.progress import flying
+from tethership.cli.tables import CsvOption
 from tethership.errors import ConfigError
 from tethership.scenario.load import read_solver
 
@@ -59,23 +60,11 @@ def fly(
     names = None if layers is None else split(layers)
     loaded.law(names)  # a wrong name is found before anything is computed
     read_solver(solver)
-    writable_folder(out)
-    writable_csv(csv)
+    writable(out, csv)
     point = trimmed_start(loaded, json)
     from tethership.simulation import fly as flown
 
-    stages = Stages(loaded.config.stop.time_limit if time is None else time)
-    flight = flown(
-        loaded,
-        point,
-        stop=time,
-        layers=names,
-        sas=False if no_sas else None,
-        rewind=rewind,
-        solver=solver,
-        progress=stages,
-    )
-    stages.done()
-    if point.saturated:
-        typer.echo(f"tethership: warning: the start is no equilibrium. {point.message}", err=True)
+    sas = False if no_sas else None
+    with flying(loaded.config.stop.time_limit if time is None else time) as reached:
+        flight = flown(loaded, point, stop=time, layers=names, sas=sas, rewind=rewind, solver=solver, progress=reached)
     tell(loaded, flight, point.outcome.name, out, "flight.png", csv, json)

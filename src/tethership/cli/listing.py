@@ -1,13 +1,13 @@
 """`tethership list`: what is packaged, what a flight holds, what a scenario's numbers are called."""
 
-from collections.abc import Iterable
 from typing import Annotated, Any
 
 import typer
 
-from tethership.cli.common import JsonOption, ScenarioOption, print_json
+from tethership.cli.common import JsonOption, ScenarioOption, writable
 from tethership.cli.completion import complete_kind, complete_scenario
-from tethership.cli.tables import CsvOption, writable_csv, write_csv
+from tethership.cli.result import Result, show
+from tethership.cli.tables import Cell, CsvOption, Table
 from tethership.errors import ConfigError, shown, suggestion
 from tethership.results.schema import VARIABLES
 from tethership.scenario import list_parameters, load_scenario
@@ -50,13 +50,14 @@ def list_(
         raise ConfigError(f"only parameters are a scenario's; write tethership list parameters {named[0]}")
     if len(set(named)) > 1:
         raise ConfigError(f"two scenarios are named, {of} and --scenario {scenario}; name one")
-    writable_csv(csv)
+    writable(None, csv)
     if kind == "outputs":
-        _show(kind, _outputs(), csv, json)
+        result = _named(kind, _outputs())
     elif kind == "parameters":
-        _show(kind, _parameters(named[0] if named else "docking"), csv, json)
+        result = _named(kind, _parameters(named[0] if named else "docking"))
     else:
-        _packaged(kind, csv, json)
+        result = _packaged(kind)
+    show(result, json, csv)
 
 
 def _outputs() -> dict[str, dict[str, Any]]:
@@ -73,41 +74,20 @@ def _parameters(scenario: str) -> dict[str, dict[str, Any]]:
     return {name: {"value": of.value, "unit": of.unit} for name, of in found.items()}
 
 
-def _show(kind: str, found: dict[str, dict[str, Any]], csv: Any, json: bool) -> None:
-    """Print a list of names with what belongs to them."""
-    keys = list(next(iter(found.values())))
-    write_csv(csv, ("name", *keys), ([name, *map(_word, of.values())] for name, of in found.items()))
-    if json:
-        print_json({kind: found})
-        return
-    width = max(map(len, found))
-    for name, of in found.items():
-        typer.echo(f"{name:<{width}}  {'  '.join(filter(None, map(_word, of.values())))}")
+def _named(kind: str, found: dict[str, dict[str, Any]]) -> Result:
+    """Return a list of names with what belongs to them."""
+    rows = [[name, *map(_word, of.values())] for name, of in found.items()]
+    return Result({kind: found}, tables=[Table(rows, columns=("name", *next(iter(found.values()))))])
 
 
-def _word(value: Any) -> str:
-    """Return a value as a table shows it."""
-    if isinstance(value, float):
-        return repr(value)
-    return " × ".join(value) if isinstance(value, list) else str(value)
+def _word(value: Any) -> Any:
+    """Return a value as a table holds it."""
+    return " × ".join(value) if isinstance(value, list) else value
 
 
-def _packaged(kind: str | None, csv: Any, json: bool) -> None:
-    """Print what is packaged, all of it or one kind."""
+def _packaged(kind: str | None) -> Result:
+    """Return what is packaged, all of it or one kind."""
     found = {name: of for name, of in describe_packaged().items() if kind in (None, name)}
-    write_csv(csv, ("kind", "name", "meaning"), _rows(found))
-    if json:
-        print_json(found)
-        return
-    width = max(len(name) for of in found.values() for name in of)
-    for each, entries in found.items():
-        typer.echo(each)
-        for name, meaning in entries.items():
-            typer.echo(f"  {name:<{width}}  {meaning}")
-
-
-def _rows(found: dict[str, dict[str, str]]) -> Iterable[list[str]]:
-    """Yield kind, name and meaning."""
-    for kind, entries in found.items():
-        for name, meaning in entries.items():
-            yield [kind, name, meaning]
+    columns = ("kind", "name", "meaning")  # the kind stands above its table
+    rows = {each: [[Cell(each, ""), *entry] for entry in entries.items()] for each, entries in found.items()}
+    return Result(found, tables=[Table(of, each, columns) for each, of in rows.items()])

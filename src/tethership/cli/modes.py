@@ -1,11 +1,11 @@
 """`tethership modes`: eigenvalues and named modes of the trimmed ship."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from tethership.cli.common import (
-    NO_ANSWER,
     FormulationOption,
     JsonOption,
     LineOption,
@@ -16,18 +16,18 @@ from tethership.cli.common import (
     WindOption,
     chosen_scenario,
     json_text,
-    pair,
-    print_json,
-    stage,
-    writable_folder,
+    writable,
 )
-from tethership.cli.points import balanced, clearance_line, point_keys, warn
-from tethership.cli.tables import CsvOption, writable_csv, write_csv
+from tethership.cli.points import balanced, clearance_line, point_keys
+from tethership.cli.progress import stage
+from tethership.cli.result import Result, show
+from tethership.cli.tables import Cell, CsvOption, Table
 from tethership.errors import ConfigError, suggestion
 from tethership.results.files import write_together
 
 if TYPE_CHECKING:
-    from tethership.analysis import LinearModel, Mode, Modes, Sensitivities
+    from tethership.analysis import LinearModel, Mode, Modes, Sensitivities, TrimPoint
+    from tethership.scenario import Scenario
 
 EXAMPLE = "Example: tethership modes --wind 9 --sensitivity pendulum"
 
@@ -64,8 +64,38 @@ def modes(
     With --out the result is also written there as modes.json, the linear model as model.nc, and every mode drawn as
     motion of the ship in modes.png.
     """
-    from tethership.analysis import TrimOutcome, linearize
+    from tethership.analysis import TrimOutcome, linearize, sensitivities
 
+    _check(part, loop, sensitivity)
+    loaded = chosen_scenario(scenario, wind, formulation, changes, line, trust)
+    writable(out, csv)
+    point = balanced(loaded, json)
+    with stage("linearise"):
+        model = _part(linearize(loaded, point, loop=loop), part)
+        found = model.modes()
+    document = _head(loaded, point, model, loop) | summary(model, found)
+    tables, lines = [_table(found, _title(loaded, point))], []
+    if sensitivity is not None:
+        with stage("sensitivities"):
+            ranked = sensitivities(loaded, sensitivity, point)
+        document["sensitivity"] = _ranked(ranked)
+        tables.append(_ranked_table(ranked))
+        lines.append(_count(ranked))
+    if out is not None:
+        _write(out, model, document)
+    result = Result(
+        document,
+        tables=tables,
+        lines=lines,
+        warnings=document["warnings"],
+        answered=point.outcome is TrimOutcome.converged,
+        reason=point.message,
+    )
+    show(result, json, csv)
+
+
+def _check(part: str, loop: str, sensitivity: str | None) -> None:
+    """Raise ConfigError where a part or a loop is unknown, or they do not go with sensitivities."""
     if part not in PARTS:
         raise ConfigError(f"--part {part!r} is no part{suggestion(part, PARTS)} Allowed: {', '.join(PARTS)}")
     if loop not in LOOPS:
@@ -74,47 +104,17 @@ def modes(
         raise ConfigError(
             "--sensitivity is of the open loop; leave --loop closed out, or sweep a gain with --loop closed"
         )
-    loaded = chosen_scenario(scenario, wind, formulation, changes, line, trust)
-    writable_csv(csv)
-    folder = None if out is None else writable_folder(out)
-    point = balanced(loaded, json)
-    with stage("linearise"):
-        model = _part(linearize(loaded, point, loop=loop), part)
-        found = model.modes()
-    ranked = None
-    if sensitivity is not None:
-        from tethership.analysis import sensitivities
 
-        with stage("sensitivities"):
-            ranked = sensitivities(loaded, sensitivity, point)
-    head = point_keys(point) | {"wind": loaded.config.wind.speed, "formulation": loaded.formulation}
-    told = [*point.warnings, *model.attributes.get("warnings", ())]
-    head |= {
-        "line": loaded.config.line_models(),
-        "loop": loop,
-        "sample_time": model.sample_time or None,
-        "warnings": told,
-    }
-    result = head | summary(model, found) | ({} if ranked is None else {"sensitivity": _ranked(ranked)})
-    if folder is not None:
-        with stage("draw"):
-            from tethership.view.linear.mode_shape import plot_all_modes
-            from tethership.view.picture import png
 
-            drawn = png(plot_all_modes(model), 120, model.run)
-        files = {"model.nc": model.content(), "modes.json": json_text(result), "modes.png": drawn}
-        write_together({folder / name: content for name, content in files.items()})
-    write_csv(csv, COLUMNS, ([values[key] for key in COLUMNS] for values in map(_numbers, found.modes)))
-    if json:
-        print_json(result)
-    else:
-        title = f"{loaded.config.title}: wind {loaded.config.wind.speed:g} m/s, {loaded.formulation}"
-        where = clearance_line(point.clearance_hull, point.clearance_cable)
-        _print(found, ranked, f"{title}\n{where}".rstrip())
-        warn(told)
-    if point.outcome is not TrimOutcome.converged:
-        typer.echo(f"tethership: {point.message}", err=True)
-        raise typer.Exit(NO_ANSWER)
+def _write(folder: Path, model: "LinearModel", document: dict[str, Any]) -> None:
+    """Write the result, the linear model and its modes drawn as motion of the ship."""
+    with stage("draw"):
+        from tethership.view.linear.mode_shape import plot_all_modes
+        from tethership.view.picture import png
+
+        drawn = png(plot_all_modes(model), 120, model.run)
+    files = {"model.nc": model.content(), "modes.json": json_text(document), "modes.png": drawn}
+    write_together({folder / name: content for name, content in files.items()})
 
 
 def _part(model: "LinearModel", part: str) -> "LinearModel":
@@ -130,10 +130,22 @@ def _part(model: "LinearModel", part: str) -> "LinearModel":
             return model
 
 
+def _head(scenario: "Scenario", point: "TrimPoint", model: "LinearModel", loop: str) -> dict[str, Any]:
+    """Return what was linearised, SI."""
+    return point_keys(point) | {
+        "wind": scenario.config.wind.speed,
+        "formulation": scenario.formulation,
+        "line": scenario.config.line_models(),
+        "loop": loop,
+        "sample_time": model.sample_time or None,
+        "warnings": [*point.warnings, *model.attributes.get("warnings", ())],
+    }
+
+
 def summary(model: "LinearModel", found: "Modes") -> dict[str, Any]:
     """Return the keys that scripts may rely on, SI; rates in rad/s."""
     return {
-        "eigenvalues": [pair(value) for value in found.eigenvalues],
+        "eigenvalues": found.eigenvalues,
         "modes": [_mode(mode) for mode in found.modes],
         "A": model.A,
         "U": model.U,
@@ -146,72 +158,70 @@ def summary(model: "LinearModel", found: "Modes") -> dict[str, Any]:
 
 def _mode(mode: "Mode") -> dict[str, Any]:
     """Return one mode as JSON holds it."""
-    return {
-        "name": mode.name,
-        "eigenvalue": pair(mode.eigenvalue),
-        "frequency": mode.frequency,
-        "damping": mode.damping,
-        "half_or_double_time": mode.half_or_double_time,
-        "period": mode.period,
-        "stable": mode.stable,
-        "null": mode.null,
-        "multiplicity": mode.multiplicity,
-        "defective": mode.defective,
-        "participation": mode.participation,
-        "shape": {state: pair(value) for state, value in mode.shape.items()},
-    }
-
-
-def _numbers(mode: "Mode") -> dict[str, Any]:
-    """Return one mode as a row of a table."""
-    return {**mode._asdict(), "real": mode.eigenvalue.real, "imaginary": mode.eigenvalue.imag, "stable": mode.stable}
+    kept = {key: value for key, value in mode._asdict().items() if key != "places"}
+    return kept | {"stable": mode.stable}
 
 
 def _ranked(table: "Sensitivities") -> dict[str, Any]:
     """Return the ranked table as JSON holds it."""
-    return {
-        "mode": table.mode,
-        "eigenvalue": pair(table.eigenvalue),
-        "multiplicity": table.multiplicity,
-        "message": table.message,
-        "rows": [
-            {
-                "parameter": row.parameter,
-                "unit": row.unit,
-                "value": row.value,
-                "derivative": None if row.derivative is None else pair(row.derivative),
-                "step": row.step,
-                "shift": None if row.shift is None else pair(row.shift),
-                "reason": row.reason,
-            }
-            for row in table.rows
-        ],
-    }
+    return table._asdict() | {"message": table.message, "rows": [row._asdict() for row in table.rows]}
 
 
-def _print(found: "Modes", ranked: "Sensitivities | None", title: str) -> None:
-    """Print the modes, and what moves one of them."""
-    typer.echo(title)
-    typer.echo(f"  {'mode':<22} {'λ [1/s]':>22} {'ω [rad/s]':>10} {'ζ':>7} {'half/double [s]':>16}")
-    for mode in found.modes:
-        value = f"{0.0 if mode.null else mode.eigenvalue.real:.5f}" + (
-            f" ± {mode.eigenvalue.imag:.5f}i" if mode.oscillates else ""
-        )
-        time = "–" if mode.half_or_double_time is None else f"{mode.half_or_double_time:.1f}"
-        growing = "" if mode.half_or_double_time is None or mode.stable else "  doubles"
-        note = "  null" if mode.null else growing
-        if mode.multiplicity > 1:
-            note += f", {mode.multiplicity} coincide" + (", defective" if mode.defective else "")
-        typer.echo(f"  {mode.name:<22} {value:>22} {mode.frequency:>10.4f} {mode.damping:>7.3f} {time:>16}{note}")
-    if ranked is None:
-        return
-    typer.echo(f"\n{ranked.message}; ranked by what an ordinary step does")
-    typer.echo(f"  {'parameter':<48} {'value':>10} {'unit':<9} {'step':>9} {'shift of λ [1/s]':>24}")
-    for row in ranked.rows[:20]:
-        if row.shift is not None:
-            shift = f"{row.shift.real:+.2e} {row.shift.imag:+.2e}i"
-            typer.echo(f"  {row.parameter:<48} {row.value:>10.4g} {row.unit:<9} {row.step:>9.2g} {shift:>24}")
-    missing = sum(row.derivative is None for row in ranked.rows)
-    typer.echo(
-        f"  {len(ranked.rows)} parameters; --json has all. {missing} have no derivative (no trim beside, or a corner)."
-    )
+def _title(scenario: "Scenario", point: "TrimPoint") -> str:
+    """Return what was linearised: wind [m/s], formulation, heights above the ground [m]."""
+    title = f"{scenario.config.title}: wind {scenario.config.wind.speed:g} m/s, {scenario.formulation}"
+    return f"{title}\n{clearance_line(point.clearance_hull, point.clearance_cable)}".rstrip()
+
+
+def _table(found: "Modes", title: str) -> Table:
+    """Return the modes as a table, a remark behind each."""
+    heads = ("mode", "λ [1/s]", "", "ω [rad/s]", "ζ", "half/double [s]")
+    return Table([[*_row(mode), _remark(mode)] for mode in found.modes], title, COLUMNS, heads)
+
+
+def _row(mode: "Mode") -> list[Any]:
+    """Return one mode's values of COLUMNS; people are shown λ in one piece, and no period."""
+    root, time = mode.eigenvalue, mode.half_or_double_time
+    value = f"{0.0 if mode.null else root.real:.5f}" + (f" ± {root.imag:.5f}i" if mode.oscillates else "")
+    return [
+        mode.name,
+        Cell(root.real, value),
+        Cell(root.imag, ""),
+        Cell(mode.frequency, f"{mode.frequency:.4f}"),
+        Cell(mode.damping, f"{mode.damping:.3f}"),
+        Cell(time, "–" if time is None else f"{time:.1f}"),
+        Cell(mode.period, ""),
+        Cell(mode.stable, ""),
+    ]
+
+
+def _remark(mode: "Mode") -> str:
+    """Return what is to be known of a mode besides its numbers."""
+    growing = "" if mode.half_or_double_time is None or mode.stable else "doubles"
+    alike = f"{mode.multiplicity} coincide" if mode.multiplicity > 1 else ""
+    defective = "defective" if alike and mode.defective else ""
+    return ", ".join(filter(None, ("null" if mode.null else growing, alike, defective)))
+
+
+def _ranked_table(table: "Sensitivities") -> Table:
+    """Return the parameters that move the mode most by an ordinary step."""
+    rows = [
+        [
+            row.parameter,
+            Cell(row.value, f"{row.value:.4g}"),
+            row.unit,
+            Cell(row.step, f"{row.step:.2g}"),
+            Cell(row.shift, f"{row.shift.real:+.2e} {row.shift.imag:+.2e}i"),
+        ]
+        for row in table.rows[:20]
+        if row.shift is not None
+    ]
+    heads = ("parameter", "value", "unit", "step", "shift of λ [1/s]")
+    return Table(rows, f"\n{table.message}; ranked by what an ordinary step does", heads, heads)
+
+
+def _count(table: "Sensitivities") -> str:
+    """Return how many parameters there are, and how many cannot be ranked."""
+    missing = sum(row.derivative is None for row in table.rows)
+    note = f"{missing} have no derivative (no trim beside, or a corner)."
+    return f"  {len(table.rows)} parameters; --json has all. {note}"

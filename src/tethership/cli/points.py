@@ -1,16 +1,17 @@
 """What every command says of a trim: the same keys, the same sentences, the same exit. Depends on: typer."""
 
-from collections.abc import Iterable
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import typer
 
-from tethership.cli.common import NO_ANSWER, print_json, stage
+from tethership.cli.progress import stage
+from tethership.cli.result import Result, show
 from tethership.cli.tables import Row
 from tethership.scenario import Scenario
 
 if TYPE_CHECKING:
-    from tethership.analysis import TrimPoint
+    from tethership.analysis import TrimOutcome, TrimPoint
 
 
 def point_keys(point: "TrimPoint") -> dict[str, Any]:
@@ -38,37 +39,26 @@ def clearance_line(hull: float | None, cable: float | None, least: str = "") -> 
     return f"  {least}{told}" if told else ""
 
 
-def warn(lines: Iterable[str]) -> None:
-    """Print warnings on standard error, a line each."""
-    for line in lines:
-        typer.echo(f"tethership: warning: {line}", err=True)
-
-
 def trimmed_start(scenario: Scenario, as_json: bool) -> "TrimPoint":
     """Return the trim from which a ship can be flown, or say why there is none and exit."""
-    from tethership.analysis import trim
-
-    with stage("trim"):
-        point = trim(scenario)
-    if not point.outcome.is_start:
-        _end(point, as_json)
+    point = _trimmed(scenario, as_json, lambda outcome: outcome.is_start)
+    if point.saturated:
+        typer.echo(f"tethership: warning: the start is no equilibrium. {point.message}", err=True)
     return point
 
 
 def balanced(scenario: Scenario, as_json: bool) -> "TrimPoint":
     """Return the trim about which a ship can be linearised, or say why there is none and exit."""
+    return _trimmed(scenario, as_json, lambda outcome: outcome.is_balanced)
+
+
+def _trimmed(scenario: Scenario, as_json: bool, serves: Callable[["TrimOutcome"], bool]) -> "TrimPoint":
+    """Return the trim if its outcome serves, else say that there is no answer and exit."""
     from tethership.analysis import trim
 
     with stage("trim"):
         point = trim(scenario)
-    if not point.outcome.is_balanced:
-        _end(point, as_json)
+    if not serves(point.outcome):
+        document = point_keys(point) | {"residual": point.residual}
+        show(Result(document, answered=False, reason=point.message), as_json)
     return point
-
-
-def _end(point: "TrimPoint", as_json: bool) -> None:
-    """Say that there is no answer, and exit."""
-    if as_json:
-        print_json(point_keys(point) | {"residual": point.residual})
-    typer.echo(f"tethership: {point.message}", err=True)
-    raise typer.Exit(NO_ANSWER)

@@ -1,20 +1,22 @@
-"""Progress on standard error for work of minutes. Depends on: rich.
+"""Progress on standard error: stages of seconds and work of minutes. Depends on: rich, typer.
 
 A bar on a terminal; elsewhere (a log, a batch queue) a plain line every half minute, and nothing for shorter work.
 """
 
+import math
 import sys
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+
+import typer
 
 Report = Callable[[str, float], None]
 """Called with what is being done and the share of the whole that is done, 0 … 1."""
 
 QUIET = 30.0
 """Time between two plain lines [s]."""
-
 
 RECENT = 60.0
 """Time over which it is judged how fast work goes on [s]."""
@@ -62,6 +64,38 @@ def progress_bar(title: str, resumed: bool = False) -> Iterator[Report]:
         yield _plain_lines(title, left)
 
 
+@contextmanager
+def stage(name: str) -> Iterator[Report]:
+    """Show a stage of seconds on a terminal, and the time it took [s] once it is over; nothing elsewhere."""
+    if not sys.stderr.isatty():
+        yield lambda text, share: None
+        return
+    begun = time.perf_counter()
+    try:
+        with progress_bar(name) as report:
+            yield report
+    finally:
+        typer.echo(f"  {name:<28} {time.perf_counter() - begun:6.2f} s", err=True)
+
+
+@contextmanager
+def flying(limit: float = math.inf) -> Iterator[Callable[[float], None]]:
+    """Show a flight of at most `limit` [s]: it compiles until it first tells the time that it has reached [s]."""
+    with ExitStack() as shown:
+        shown.enter_context(stage("compile"))
+        report: Report | None = None
+        most = f" of at most {limit:.0f} s" if limit < math.inf else ""
+
+        def reached(now: float) -> None:
+            nonlocal report
+            if report is None:
+                shown.close()
+                report = shown.enter_context(stage("fly"))
+            report(f"fly: {now:.1f} s{most}", now / limit)
+
+        yield reached
+
+
 def _plain_lines(title: str, left: Callable[[float], float | None]) -> Report:
     """Return a report that prints a line now and then."""
     begun = last = time.monotonic()
@@ -81,21 +115,21 @@ def _plain_lines(title: str, left: Callable[[float], float | None]) -> Report:
 def _bar(title: str, left: Callable[[float], float | None]) -> Iterator[Report]:
     """Show a bar."""
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
     columns = (
         TextColumn("  {task.description}"),
         BarColumn(),
-        TextColumn("{task.percentage:>3.0f} %"),
+        TaskProgressColumn("{task.percentage:>3.0f} %"),
         TimeElapsedColumn(),
         TextColumn("{task.fields[left]}"),
     )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(title, total=1.0, left="")
+    with Progress(*columns, console=Console(stderr=True), transient=True, redirect_stdout=False) as bar:
+        task = bar.add_task(f"{title:<36}", total=None, left="")
 
         def report(text: str, share: float) -> None:
             rest = left(share)
             words = "" if rest is None else f"{rest:.0f} s left"
-            bar.update(task, description=f"{text:<36}", completed=share, left=words)
+            bar.update(task, description=f"{text:<36}", total=1.0, completed=share, left=words)
 
         yield report

@@ -10,7 +10,6 @@ import typer
 
 from tethership._studies import studied
 from tethership.cli.common import (
-    NO_ANSWER,
     FormulationOption,
     JsonOption,
     LineOption,
@@ -20,15 +19,15 @@ from tethership.cli.common import (
     TrustOption,
     WindOption,
     chosen_scenario,
+    flag_changes,
     pair,
-    parsed_changes,
-    print_json,
-    stage,
-    writable_folder,
+    writable,
 )
 from tethership.cli.completion import complete_parameter
-from tethership.cli.points import clearance_line, warn
-from tethership.cli.tables import CsvOption, writable_csv, write_csv
+from tethership.cli.points import clearance_line
+from tethership.cli.progress import stage
+from tethership.cli.result import Result, show
+from tethership.cli.tables import CsvOption, Table
 from tethership.errors import ConfigError, shown
 from tethership.results.files import write_together
 from tethership.scenario import Scenario
@@ -71,36 +70,30 @@ def sweep(
 
     Writes a picture and an interactive page into --out. With --figure and no --formulation, both formulations.
     """
+    from tethership.analysis.loci.sweep_warnings import sweep_warnings
+
     if (over is None) == (figure is None):
         raise ConfigError("name what to vary, --over wind=6:12:13, or a figure of the paper, --figure 7 (not both)")
     if figure is not None:
         if scenario != "docking":
             raise ConfigError(f"--figure has its own scenarios; leave out {scenario!r}, or change values with --set")
-        writable_folder(out)
-        writable_csv(csv)
-        result, found = studied("figures")(figure, formulation, _set(wind, changes), out)
+        writable(out, csv)
+        document, found = studied("figures")(figure, formulation, flag_changes(wind, None, changes), out)
     else:
         loaded = chosen_scenario(scenario, wind, formulation, changes, line, trust)
         axes = [_axis(loaded, text) for text in over or []]
-        writable_folder(out)
-        writable_csv(csv)
-        result, found = _swept(loaded, axes, out, loop)
-    if csv is not None:
-        names = list(dict.fromkeys(name for one in found for name in one.values))
-        result["files"] += write_csv(csv, [*names, "track", "real", "imaginary", "outcome"], _csv_rows(found, names))
-    if json:
-        print_json(result)
-    else:
-        _print(result, found)
-        warn(line for one in found for line in summary(one)["warnings"])
-    if not any(one.trimmed.any() for one in found):
-        typer.echo(f"tethership: no point could be trimmed. {found[0].outcomes[0].value}", err=True)
-        raise typer.Exit(NO_ANSWER)
-
-
-def _set(wind: float | None, changes: list[str] | None) -> dict[str, Any]:
-    """Return the changes of --set and --wind."""
-    return parsed_changes(changes) | ({} if wind is None else {"wind.speed": wind})
+        writable(out, csv)
+        document, found = _swept(loaded, axes, out, loop)
+    result = Result(
+        document,
+        data=_table(found),
+        lines=[line for one in found for line in _lines(one)],
+        files=document["files"],
+        warnings=[line for one in found for line in sweep_warnings(one)],
+        answered=any(one.trimmed.any() for one in found),
+        reason=f"no point could be trimmed. {found[0].outcomes[0].value}",
+    )
+    show(result, json, csv)
 
 
 def _swept(
@@ -141,7 +134,7 @@ def summary(found: "Sweep") -> dict[str, Any]:
             "value": event.at[first] * factors[first],
             "at": {name: value * factors[name] for name, value in event.at.items()},
             "modes": list(event.tracks),
-            "eigenvalue": pair(event.eigenvalue),
+            "eigenvalue": event.eigenvalue,
         }
         for event in found.events
     ]
@@ -173,15 +166,17 @@ def _root(value: complex) -> list[float] | None:
     return None if math.isnan(value.real) else pair(value)
 
 
-def _csv_rows(found: list["Sweep"], names: list[str]) -> Iterator[list[Any]]:
-    """Yield a row for each point and track: parameters [SI], eigenvalue [1/s], how the trim ended."""
+def _table(found: list["Sweep"]) -> Table:
+    """Return a row for each point and track: parameters [SI], eigenvalue [1/s], how the trim ended."""
+    names, rows = list(dict.fromkeys(name for one in found for name in one.values)), []
     for one in found:
         for i, outcome in enumerate(one.outcomes):
             place = [one.values[name][i] if name in one.values else "" for name in names]
             for track in one.tracks:
                 root = complex(one.track(track)[i])
                 numbers = ["", ""] if math.isnan(root.real) else [root.real, root.imag]
-                yield [*place, track, *numbers, outcome.name]
+                rows.append([*place, track, *numbers, outcome.name])
+    return Table(rows, columns=(*names, "track", "real", "imaginary", "outcome"))
 
 
 def _axis(scenario: Scenario, text: str) -> dict[str, np.ndarray]:
@@ -284,24 +279,21 @@ def _lacking(found: "Sweep", point: int) -> str:
             return f"largest |throttle| {most:.2f} of nominal{fins}"
 
 
-def _print(result: dict[str, Any], found: list["Sweep"]) -> None:
-    """Print what happened along the sweep and the files."""
-    for one in found:
-        first, last = ({name: float(v[i]) for name, v in one.values.items()} for i in (0, -1))
-        words = ", ".join(f"{name} {first[name]:.4g} to {last[name]:.4g} {one.units[name]}" for name in one.values)
-        typer.echo(f"{words}: {int(one.trimmed.sum())} of {len(one.outcomes)} points in trim")
-        where = clearance_line(_least(one.clearance_hull), _least(one.clearance_cable), "least ")
-        if where:
-            typer.echo(where)
-        for point, value in enumerate(next(iter(one.values.values()))):
-            if not one.trimmed[point]:
-                typer.echo(f"  {value:<10.4g} {one.outcomes[point].name}: {_lacking(one, point)}")
-        for name in one.unstable_throughout:
-            growth = one.track(name)[one.trimmed].real
-            typer.echo(f"  {name} unstable at every point (Re λ {growth.min():.3g} … {growth.max():.3g} 1/s)")
-        for event in one.events:
-            place = ", ".join(f"{name} = {value:.4g}" for name, value in event.at.items())
-            verb = {"unstable": "becomes unstable", "stable": "becomes stable"}.get(event.kind, event.kind)
-            typer.echo(f"  {' and '.join(event.tracks)} {verb} at {place} (λ = {event.eigenvalue:.4f} 1/s)")
-    for path in result["files"]:
-        typer.echo(f"wrote {path}")
+def _lines(one: "Sweep") -> Iterator[str]:
+    """Yield what happened along a sweep, a line each."""
+    first, last = ({name: float(v[i]) for name, v in one.values.items()} for i in (0, -1))
+    words = ", ".join(f"{name} {first[name]:.4g} to {last[name]:.4g} {one.units[name]}" for name in one.values)
+    yield f"{words}: {int(one.trimmed.sum())} of {len(one.outcomes)} points in trim"
+    where = clearance_line(_least(one.clearance_hull), _least(one.clearance_cable), "least ")
+    if where:
+        yield where
+    for point, value in enumerate(next(iter(one.values.values()))):
+        if not one.trimmed[point]:
+            yield f"  {value:<10.4g} {one.outcomes[point].name}: {_lacking(one, point)}"
+    for name in one.unstable_throughout:
+        growth = one.track(name)[one.trimmed].real
+        yield f"  {name} unstable at every point (Re λ {growth.min():.3g} … {growth.max():.3g} 1/s)"
+    for event in one.events:
+        place = ", ".join(f"{name} = {value:.4g}" for name, value in event.at.items())
+        verb = {"unstable": "becomes unstable", "stable": "becomes stable"}.get(event.kind, event.kind)
+        yield f"  {' and '.join(event.tracks)} {verb} at {place} (λ = {event.eigenvalue:.4f} 1/s)"

@@ -15,11 +15,10 @@ from tethership.cli.common import (
     WindOption,
     chosen_scenario,
     json_text,
-    print_json,
-    writable_folder,
+    writable,
 )
-from tethership.cli.points import warn
-from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
+from tethership.cli.result import Result, show
+from tethership.cli.tables import Cell, CsvOption, Row, Table
 from tethership.errors import ConfigError, SolveError
 from tethership.results.files import write_atomically
 from tethership.results.limits import ratios_passed
@@ -73,32 +72,18 @@ def tension(
     reach = chosen.length if length is None else length
     if not reach > 0:
         raise ConfigError(f"--length is {reach:g}; it must be above 0 m")
-    writable_csv(csv)
-    folder = None if out is None else writable_folder(out)
+    writable(out, csv)
     place = np.array(chosen.anchor if anchor is None else anchor)
     between = _Line(loaded, index, np.array(end), place, reach, anchor is not None)
-    with np.errstate(all="ignore"):  # what is not finite is told below
-        result = _computed(between, np.array(velocity), wind_vector, points)
-    if not np.isfinite(result["tension"]):
-        with np.errstate(all="ignore"):
-            apart = float(np.linalg.norm(between.end - between.anchor))
-        raise SolveError(
-            f"the tension between these ends is not finite: {reach:g} m of cable over {apart:.3g} m are beyond what "
-            "can be computed; check --end, --anchor and --length"
-        )
-    if folder is not None:
-        write_atomically(folder / "tension.json", json_text(result))
-    rows = _rows(result)
-    write_rows(csv, rows)
-    if json:
-        print_json(result)
-        return
-    print_table(rows, f"cable {chosen.name!r}, {reach:g} m, formulation {loaded.formulation}")
+    with np.errstate(all="ignore"):  # what is not finite is told by _check_finite
+        document = _computed(between, np.array(velocity), wind_vector, points)
+        _check_finite(between, document["tension"])
+    if out is not None:
+        write_atomically(out / "tension.json", json_text(document))
+    tables = [Table(_rows(document), f"cable {chosen.name!r}, {reach:g} m, formulation {loaded.formulation}")]
     if points is not None:
-        typer.echo("  " + "  ".join(f"{axis:>12}" for axis in (*GROUND, "tension")))
-    for position, tension in zip(result.get("points", ()), result.get("tension_along", ()), strict=True):
-        typer.echo("  " + "  ".join(f"{value:>10.3f} m" for value in position) + f"  {tension:>10.3f} N")
-    warn(result["warnings"])
+        tables.append(_curve(document))
+    show(Result(document, tables=tables, warnings=document["warnings"]), json, csv)
 
 
 class _Line(NamedTuple):
@@ -137,6 +122,25 @@ class _Line(NamedTuple):
                 "modelled"
             )
         return said
+
+
+def _check_finite(line: _Line, tension: float) -> None:
+    """Raise SolveError where the tension [N] between two ends is not finite."""
+    if not np.isfinite(tension):
+        apart = float(np.linalg.norm(line.end - line.anchor))
+        raise SolveError(
+            f"the tension between these ends is not finite: {line.length:g} m of cable over {apart:.3g} m are beyond "
+            "what can be computed; check --end, --anchor and --length"
+        )
+
+
+def _curve(result: dict[str, Any]) -> Table:
+    """Return the points of the curve [m] and the tension there [N]."""
+    rows = [
+        [*(Cell(value, f"{value:.3f} m") for value in position), Cell(tension, f"{tension:.3f} N")]
+        for position, tension in zip(result["points"].tolist(), result["tension_along"].tolist(), strict=True)
+    ]
+    return Table(rows, columns=(*GROUND, "tension"), heads=(*GROUND, "tension"))
 
 
 def _rows(result: dict[str, Any]) -> list[Row]:

@@ -6,7 +6,6 @@ import numpy as np
 import typer
 
 from tethership.cli.common import (
-    NO_ANSWER,
     FormulationOption,
     JsonOption,
     LineOption,
@@ -16,12 +15,12 @@ from tethership.cli.common import (
     WindOption,
     chosen_scenario,
     json_text,
-    print_json,
-    stage,
-    writable_folder,
+    writable,
 )
-from tethership.cli.points import clearance_rows, point_keys, warn
-from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
+from tethership.cli.points import clearance_rows, point_keys
+from tethership.cli.progress import stage
+from tethership.cli.result import Result, show
+from tethership.cli.tables import CsvOption, Row, Table
 from tethership.results.files import write_atomically
 from tethership.scenario import Scenario
 
@@ -58,8 +57,7 @@ def trim(
     from tethership.plant.state import STATE_NAMES
 
     loaded = chosen_scenario(scenario, wind, formulation, changes, line)
-    writable_csv(csv)
-    folder = None if out is None else writable_folder(out)
+    writable(out, csv)
     names = None if unknowns is None else [name.strip() for name in unknowns.split(",")]
     with stage("trim"):
         point = solve(loaded, names)
@@ -68,7 +66,7 @@ def trim(
         name: float(np.degrees(value)) if name in ANGLES else float(value)
         for name, value in zip(STATE_NAMES, values, strict=True)
     }
-    result = point_keys(point) | {
+    document = point_keys(point) | {
         "throttle": point.command.throttle,
         "deflection": np.degrees(point.command.deflection),
         "tension": point.tension,
@@ -78,17 +76,11 @@ def trim(
         "formulation": loaded.formulation,
         "line": loaded.config.line_models(),
     }
-    if folder is not None:
-        write_atomically(folder / "trim.json", json_text(result))
-    rows = _rows(loaded, point, state)
-    write_rows(csv, rows)
-    if json:
-        print_json(result)
-    else:
-        print_table(rows, f"{point.outcome.name}: {point.message}")
-        warn(point.warnings)
-    if point.outcome is not TrimOutcome.converged:
-        raise typer.Exit(NO_ANSWER)
+    if out is not None:
+        write_atomically(out / "trim.json", json_text(document))
+    table = Table(_rows(loaded, point, state), f"{point.outcome.name}: {point.message}")
+    met = point.outcome is TrimOutcome.converged
+    show(Result(document, tables=[table], warnings=point.warnings, answered=met), json, csv)
 
 
 def _rows(loaded: Scenario, point: "TrimPoint", state: dict[str, float]) -> list[Row]:

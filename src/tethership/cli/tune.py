@@ -6,18 +6,17 @@ from typing import Annotated, Any
 import typer
 
 from tethership.cli.common import (
-    NO_ANSWER,
     FormulationOption,
     JsonOption,
     OutOption,
     ScenarioArgument,
     SetOption,
     chosen_scenario,
-    print_json,
-    writable_folder,
+    writable,
 )
 from tethership.cli.progress import progress_bar
-from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
+from tethership.cli.result import Result, show
+from tethership.cli.tables import CsvOption, Row, Table
 from tethership.errors import ConfigError
 from tethership.results.files import write_together
 
@@ -53,8 +52,7 @@ def tune(
     if searched > flights:
         raise ConfigError(f"--searched {searched} is more than the {flights} flights there are; lower it")
     loaded = chosen_scenario(scenario, wind, formulation, changes)
-    writable_folder(out)
-    writable_csv(csv)
+    writable(out, csv)
     with progress_bar("tune") as report:
         found = search(
             loaded,
@@ -66,16 +64,15 @@ def tune(
             lambda what, share, least: report(f"{what}, cost {least:.3f}", share),
         )
     document = tuning_document(found, loaded, seed, flights)
-    document["files"] = [
-        *_written(document, scenario, changes, out),
-        *write_rows(csv, [*_gains(document), *_effects(document)]),
-    ]
-    if json:
-        print_json(document)
-    else:
-        _print(document)
-    if found.after.undocked >= 1.0:
-        raise typer.Exit(NO_ANSWER)
+    gains = f"gains for {document['wind']:g} m/s, formulation {document['formulation']}"
+    effects = f"over {document['flights']} perturbed flights"
+    result = Result(
+        document,
+        tables=[Table(_gains(document), gains), Table(_effects(document), effects)],
+        files=_written(document, scenario, changes, out),
+        answered=found.after.undocked < 1.0,
+    )
+    show(result, json, csv)
 
 
 def _written(document: dict[str, Any], name: str, changes: list[str] | None, out: Path) -> list[str]:
@@ -131,11 +128,3 @@ def _effects(document: dict[str, Any]) -> list[Row]:
         Row(text, factor * after[key], unit, ".4g", f"  (before {factor * before[key]:.4g})")
         for key, (text, factor, unit) in EFFECTS.items()
     ]
-
-
-def _print(document: dict[str, Any]) -> None:
-    """Print gains and what they do."""
-    print_table(_gains(document), f"gains for {document['wind']:g} m/s, formulation {document['formulation']}")
-    print_table(_effects(document), f"over {document['flights']} perturbed flights")
-    for path in document["files"]:
-        typer.echo(f"wrote {path}")

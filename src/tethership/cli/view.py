@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tethership.cli.common import NO_ANSWER, JsonOption, print_json, stage
+from tethership.cli.common import NO_ANSWER, JsonOption, named_file
+from tethership.cli.progress import stage
+from tethership.cli.result import Result, show
 from tethership.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -36,13 +38,12 @@ def view(
     from tethership.view import write_replay
 
     named = _flights(files)
-    page = _page(files, list(named), out)
+    stems = [file.stem for file in files] if len(files) == 1 else [Path(name).name for name in named]
+    beside = files[0].parent / (re.sub(r"[^\w.-]+", "_", "_".join(stems)) + "_replay.html")
+    page = named_file(out, beside, PAGES, "page: give a name that ends in .html")
     with stage("write"):
         write_replay(named, page)
-    if json:
-        print_json({"file": str(page), "flights": [str(file) for file in files]})
-    else:
-        typer.echo(f"wrote {page}")
+    show(Result({"file": str(page), "flights": [str(file) for file in files]}, f"wrote {page}"), json)
     if not no_open:
         _open(page)
 
@@ -72,19 +73,6 @@ def _names(files: list[Path]) -> list[str]:
         if len(set(names)) == len(files):
             return names
     return [f"{file.stem} {i}" for i, file in enumerate(files, start=1)]
-
-
-def _page(files: list[Path], names: list[str], out: Path | None) -> Path:
-    """Return where the page is written."""
-    stems = [file.stem for file in files] if len(files) == 1 else [Path(name).name for name in names]
-    name = re.sub(r"[^\w.-]+", "_", "_".join(stems)) + "_replay.html"
-    if out is None:
-        return files[0].parent / name
-    if out.is_dir() or not out.suffix:
-        return out / name
-    if out.suffix.lower() not in PAGES:
-        raise ConfigError(f"--out {out} is no page: give a name that ends in .html, or a folder")
-    return out
 
 
 def _open(page: Path) -> None:

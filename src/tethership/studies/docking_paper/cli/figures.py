@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tethership.cli.common import stage
+from tethership.cli.progress import stage
 from tethership.cli.sweep import summary
 from tethership.results.files import write_together
 from tethership.studies.docking_paper import linear_figure

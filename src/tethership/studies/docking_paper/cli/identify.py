@@ -12,11 +12,11 @@ from tethership.cli.common import (
     ScenarioArgument,
     SetOption,
     chosen_scenario,
-    print_json,
-    writable_folder,
+    writable,
 )
 from tethership.cli.progress import progress_bar
-from tethership.cli.tables import CsvOption, Row, print_table, writable_csv, write_rows
+from tethership.cli.result import Result, show
+from tethership.cli.tables import CsvOption, Row, Table
 from tethership.errors import ConfigError
 from tethership.results.files import write_together
 
@@ -60,8 +60,7 @@ def identify(
     _check(loaded)
     if 2**power < population:
         raise ConfigError(f"2^{power} Sobol points are fewer than the population of {population}; raise --power")
-    writable_folder(out)
-    writable_csv(csv)
+    writable(out, csv)
     budget = Budget(power, population, generations, rounds, left_out)
     with progress_bar("identify") as report:
         found = fit(loaded, budget, seed, lambda what, share, least: report(f"{what}, misfit {least:.3f}", share))
@@ -74,11 +73,7 @@ def identify(
     fit_file = out / f"identified_{loaded.formulation}.json"
     vehicle_file = out / f"lotte_identified_{loaded.formulation}.toml"
     written = write_together({fit_file: fit_text(document), vehicle_file: vehicle_of(document)})
-    document["files"] = [*map(str, written), *write_rows(csv, [*_fitted(document), *_quality(document)])]
-    if json:
-        print_json(document)
-    else:
-        _print(document)
+    show(_told(document, [*map(str, written)]), json, csv)
 
 
 def _check(scenario: Any) -> None:
@@ -147,15 +142,14 @@ def _quality(document: dict[str, Any]) -> list[Row]:
     ]
 
 
-def _print(document: dict[str, Any]) -> None:
-    """Print parameters, spread and misfits."""
-    title = f"formulation {document['formulation']}: best vector, and 5-95 % of all within 10 % of its misfit"
-    print_table(_fitted(document), title)
-    print_table(_quality(document), "quality (0 is agreement; 0.83 is one tolerance off in every number)")
-    if document["spectrum_unmet"]:
-        typer.echo(f"The best vector's free ship does not have: {', '.join(document['spectrum_unmet'])}")
-    for path in document["files"]:
-        typer.echo(f"wrote {path}")
+def _told(document: dict[str, Any], files: list[str]) -> Result:
+    """Return parameters, spread and misfits."""
+    best = f"formulation {document['formulation']}: best vector, and 5-95 % of all within 10 % of its misfit"
+    quality = "quality (0 is agreement; 0.83 is one tolerance off in every number)"
+    unmet = ", ".join(document["spectrum_unmet"])
+    lines = [f"The best vector's free ship does not have: {unmet}"] if unmet else []
+    tables = [Table(_fitted(document), best), Table(_quality(document), quality)]
+    return Result(document, tables=tables, lines=lines, files=files)
 
 
 def _flag(name: str, document: dict[str, Any]) -> str:

@@ -1,17 +1,16 @@
 """`tethership reproduce`: the whole study of the paper, published beside computed, as one report."""
 
-import platform
 import time
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tethership._version import __version__
-from tethership.cli.common import JsonOption, json_text, print_json, writable_folder
+from tethership.cli.common import JsonOption, json_text, provenance, writable
 from tethership.cli.progress import progress_bar
-from tethership.cli.tables import CsvOption, writable_csv, write_csv
+from tethership.cli.result import Result, show
+from tethership.cli.tables import CsvOption, Table
 from tethership.errors import ConfigError, suggestion
 from tethership.results.files import write_atomically
 from tethership.results.lock import held
@@ -70,14 +69,13 @@ def reproduce(
 
     jobs = _chosen(only)
     settings = Settings(_formulation(formulation), flights=flights, seed=seed)
-    writable_folder(out)
-    writable_csv(csv)
+    writable(out, csv)
     begun = time.perf_counter()
     with held(out), progress_bar("reproduce") as report:
         anew = run_jobs(jobs, out, settings, report, fresh)
         report("report", 1.0)
         parts, left_out = _in_the_report(out, settings, jobs)
-        path = write_study(out, settings, parts, left_out, _footer(settings))
+        path = write_study(out, settings, parts, left_out, provenance(formulation=settings.formulation))
     result: dict[str, Any] = {"formulation": settings.formulation, "partial": bool(left_out), "left_out": left_out}
     result |= {"tables": {}, "claims": {}}
     for name in ("tables", "linear"):
@@ -90,15 +88,9 @@ def reproduce(
             result[name] = load_part(out, name)
     result["counts"] = _counts(result)
     write_atomically(out / "tables.json", json_text(result))
-    keys = ("wind", "metric", "published", "computed", "ratio", "verdict", "held_out")
-    rows = ([name, *(row[key] for key in keys)] for name, table in result["tables"].items() for row in table)
-    result["files"] = [str(path), str(out / "tables.json"), *write_csv(csv, ("table", *keys), rows)]
     result["computed_anew"] = [name for name, again in anew.items() if again]
     result["seconds"] = round(time.perf_counter() - begun, 1)
-    if json:
-        print_json(result)
-    else:
-        _print(result)
+    show(_told(result, [str(path), str(out / "tables.json")]), json, csv)
 
 
 def _formulation(given: str | None) -> str:
@@ -172,31 +164,23 @@ def _counts(result: dict[str, Any]) -> dict[str, Any]:
     return {"holds": holds, "does_not_hold": len(result["claims"]) - holds, **counts(rows)}
 
 
-def _footer(settings: Any) -> dict[str, Any]:
-    """Return versions and provenance."""
-    import jax
-
-    return {
-        "tethership": __version__,
-        "formulation": settings.formulation,
-        "jax": jax.__version__,
-        "python": platform.python_version(),
-        "written": time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime()),
-    }
+def _told(result: dict[str, Any], files: list[str]) -> Result:
+    """Return verdicts in short for people, the paper's numbers beside ours for CSV."""
+    keys = ("wind", "metric", "published", "computed", "ratio", "verdict", "held_out")
+    rows = [[name, *(row[key] for key in keys)] for name, table in result["tables"].items() for row in table]
+    data = Table(rows, columns=("table", *keys))
+    return Result(result, f"formulation {result['formulation']}", data=data, lines=list(_lines(result)), files=files)
 
 
-def _print(result: dict[str, Any]) -> None:
-    """Print verdicts in short."""
+def _lines(result: dict[str, Any]) -> Iterator[str]:
+    """Yield what the report lacks, how many numbers agree, and which claims hold."""
     number = result["counts"]
-    typer.echo(f"formulation {result['formulation']}")
     if result["left_out"]:
-        typer.echo(f"  partial: without {', '.join(result['left_out'])}; leave out --only for the whole study")
+        yield f"  partial: without {', '.join(result['left_out'])}; leave out --only for the whole study"
     if result["tables"]:
         for words, of in (("fitted", number), ("held out", number["held_out"])):
-            typer.echo(f"  tables, {words:<8}  {of['agrees']} agree, {of['near']} near, {of['differs']} differ")
+            yield f"  tables, {words:<8}  {of['agrees']} agree, {of['near']} near, {of['differs']} differ"
     for name, claim in result["claims"].items():
         met = sum(claim["parts"].values())
         verdict = "holds" if claim["holds"] else f"does not hold ({met} of {len(claim['parts'])} parts do)"
-        typer.echo(f"  {name:<4} {verdict}")
-    for path in result["files"]:
-        typer.echo(f"wrote {path}")
+        yield f"  {name:<4} {verdict}"
