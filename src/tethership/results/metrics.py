@@ -64,7 +64,15 @@ def seconds_above(time: Array, value: Array, threshold: float) -> float:
 
 
 def mean(time: Array, value: Array) -> float:
-    """Return the time average of a signal, trapezoidal; unit of the value."""
+    """Return the time average of a signal, trapezoidal, in the signal's unit.
+
+    Parameters
+    ----------
+    time : Array
+        t [s], rising, shape (n,).
+    value : Array
+        Samples, shape (n,), any unit; where all times are one the first sample is the average.
+    """
     span = time[-1] - time[0]
     return float(np.trapezoid(value, time) / span) if span > 0 else float(value[0])
 
@@ -89,7 +97,7 @@ def control_energy(time: Array, throttle: Array) -> float:
 
 
 def jumps(angle: Array) -> int:
-    """Return how often the misalignment χ jumps by more than a right angle between samples.
+    """Return how often the misalignment χ [rad], shape (n,), jumps by more than a right angle between samples.
 
     Notes
     -----
