@@ -19,7 +19,7 @@ NEVER = 1e9
 
 
 class AbstractGust(eqx.Module):
-    """A velocity added to the wind, the same everywhere."""
+    """A velocity added to the wind, ground axes [m/s], the same everywhere."""
 
     @abc.abstractmethod
     def velocity(self, time: Float[Array, ""]) -> Float[Array, "3"]:
@@ -52,7 +52,7 @@ class CosineGust(AbstractGust):
 
     @classmethod
     def silent(cls) -> "CosineGust":
-        """Return a gust that adds nothing, and begins after every flight: a switch that is off."""
+        """Return a gust that adds 0 [m/s] and begins at `NEVER` [s], after every flight: a switch that is off."""
         return cls(jnp.zeros(3), jnp.full((), NEVER, dtype=float), jnp.ones(()), jnp.zeros(()))
 
     def velocity(self, time: Float[Array, ""]) -> Float[Array, "3"]:
