@@ -72,7 +72,7 @@ def trim_rest(result: dict[str, Any]) -> Any:
     left = [(name, f"{v:.2e}", unit) for (name, unit), v in zip(RESIDUAL, result["residual"], strict=True)]
     return html.Div(
         [
-            _table("Where the ship rests", values[:3] + values[3:]),
+            _table("Where the ship rests", values),
             _table("Thrusters: throttle, thrust", thrusters),
             _table("Cables", cables),
             _table("Force and moment left over", left),
