@@ -362,7 +362,7 @@ def test_a_base_that_stands_on_itself_or_is_not_there(tmp_path):
     file.write_text('base = "round.toml"\n')
     with pytest.raises(ts.ConfigError, match="stands on itself"):
         ts.load_scenario(str(file))
-    file.write_text('base = "dockin"\n')
+    file.write_text('base = "Docking"\n')
     with pytest.raises(ts.ConfigError, match="did you mean 'docking'"):
         ts.load_scenario(str(file))
     file.write_text("base = 3\n")

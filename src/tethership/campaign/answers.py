@@ -24,7 +24,10 @@ from tethership.simulation import Outcome
 from tethership.simulation.batch import CODES
 
 UNBALANCED = 1e-3
-"""What a trim may leave [1e-3 of the weight]: beyond it the case has no equilibrium."""
+"""What a trim may leave in the units of its balance, beyond which a case has no equilibrium [-].
+
+They are 1e-3 of the weight for forces and, times 1 m, for moments, and 1e-3 rad/s and m/s for what must stand still.
+"""
 
 NO_START = "no_equilibrium"
 """How a flight ended whose trim was none."""

@@ -266,7 +266,8 @@ def fly_cases(
     -------
     dict[str, ndarray]
         As `simulation.batch.metrics_of`, first axis the flight: tensions [N], times [s], angles [deg], clearance [m]
-        (`campaign.store.UNITS`); `unbalanced` is what the trim left, in 1e-3 of the weight [-].
+        (`campaign.store.UNITS`); `unbalanced` is the largest of what the trim left: in 1e-3 of the weight [-], what
+        must stand still in 1e-3 rad/s and m/s.
 
     Raises
     ------

@@ -12,6 +12,7 @@ from tethership.cli.common import (
     MaybeOutOption,
     ScenarioArgument,
     SetOption,
+    TrustOption,
     WindOption,
     chosen_scenario,
     json_text,
@@ -53,6 +54,7 @@ def tension(
     wind: WindOption = None,
     formulation: FormulationOption = None,
     line: LineOption = None,
+    trust: TrustOption = False,
     changes: SetOption = None,
     out: MaybeOutOption = None,
     csv: CsvOption = None,
@@ -66,7 +68,7 @@ def tension(
     """
     if wind is not None and wind_vector is not None:
         raise ConfigError("--wind and --wind-vector both say what the wind is; give one of them")
-    loaded = chosen_scenario(scenario, wind, formulation, changes, line)
+    loaded = chosen_scenario(scenario, wind, formulation, changes, line, trust)
     index = _cable_index(loaded, cable)
     chosen = loaded.config.cables[index]
     reach = chosen.length if length is None else length

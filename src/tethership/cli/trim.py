@@ -12,6 +12,7 @@ from tethership.cli.common import (
     MaybeOutOption,
     ScenarioArgument,
     SetOption,
+    TrustOption,
     WindOption,
     chosen_scenario,
     json_text,
@@ -43,6 +44,7 @@ def trim(
             help="What is looked for, by commas: velocity_north … phi … down, thrusters, throttle, deflection."
         ),
     ] = None,
+    trust: TrustOption = False,
     changes: SetOption = None,
     out: MaybeOutOption = None,
     csv: CsvOption = None,
@@ -56,7 +58,7 @@ def trim(
     from tethership.analysis import trim as solve
     from tethership.plant.state import STATE_NAMES
 
-    loaded = chosen_scenario(scenario, wind, formulation, changes, line)
+    loaded = chosen_scenario(scenario, wind, formulation, changes, line, trust)
     writable(out, csv)
     names = None if unknowns is None else [name.strip() for name in unknowns.split(",")]
     with stage("trim"):

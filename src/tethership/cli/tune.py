@@ -11,6 +11,7 @@ from tethership.cli.common import (
     OutOption,
     ScenarioArgument,
     SetOption,
+    TrustOption,
     chosen_scenario,
     writable,
 )
@@ -34,6 +35,7 @@ def tune(
     population: Annotated[int, typer.Option(min=8, max=1000, help="Sets of gains of a generation.")] = 32,
     generations: Annotated[int, typer.Option(min=1, max=1000, help="Of the differential evolution.")] = 40,
     seed: Annotated[int, typer.Option(min=0, help="Of everything random.")] = 1,
+    trust: TrustOption = False,
     changes: SetOption = None,
     out: OutOption = Path("out"),
     csv: CsvOption = None,
@@ -51,7 +53,7 @@ def tune(
     searched = min(24, flights) if searched is None else searched
     if searched > flights:
         raise ConfigError(f"--searched {searched} is more than the {flights} flights there are; lower it")
-    loaded = chosen_scenario(scenario, wind, formulation, changes)
+    loaded = chosen_scenario(scenario, wind, formulation, changes, trust=trust)
     writable(out, csv)
     with progress_bar("tune") as report:
         found = search(

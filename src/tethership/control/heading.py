@@ -93,10 +93,10 @@ class HeadingLaw(AbstractLaw):
 
 
 class SineHeadingLaw(HeadingLaw):
-    """Heading control on arcsin(sin χ): the angle as the cross product of two unit vectors gives it.
+    """Heading control on arcsin(sin χ) [rad]: the angle as the cross product of two unit vectors gives it.
 
-    With the anchor astern it is small, and does not jump from π to −π there; with the tether point passing over the
-    anchor it still changes sign.
+    Attributes are those of `HeadingLaw`. With the anchor astern the angle is small, and does not jump from π to −π
+    there; with the tether point passing over the anchor it still changes sign.
     """
 
     def angle(self, misaligned: Float[Array, ""]) -> Float[Array, ""]:
@@ -105,9 +105,10 @@ class SineHeadingLaw(HeadingLaw):
 
 
 class LineHeadingLaw(HeadingLaw):
-    """Heading control on the angle between the hull's axis and the line to the anchor, whichever way it points.
+    """Heading control on the angle [rad] between the hull's axis and the line to the anchor, whichever way it points.
 
-    It does not jump when the tether point passes over the anchor, but where the line stands across the hull.
+    Attributes are those of `HeadingLaw`; the angle is arctan(tan χ). It does not jump when the tether point passes over
+    the anchor, but where the line stands across the hull.
     """
 
     def angle(self, misaligned: Float[Array, ""]) -> Float[Array, ""]:

@@ -92,7 +92,10 @@ Asked = Correction | Request
 
 
 def added(first: Asked, second: Asked) -> Asked:
-    """Return the sum of what two laws ask."""
+    """Return the sum of what two laws ask: changes of throttles [-], deflections [rad] and rewind rates [m/s].
+
+    Named channels and demands are added name by name; where either is a `Request`, so is the sum.
+    """
     if isinstance(first, Correction) and isinstance(second, Correction):
         return Correction(*(a + b for a, b in zip(first, second, strict=True)))
     one, other = (asked if isinstance(asked, Request) else Request({}, {}, asked) for asked in (first, second))
@@ -114,7 +117,11 @@ def _summed(first: Mapping[str, Any], second: Mapping[str, Any]) -> Mapping[str,
 
 
 class AbstractLaw(eqx.Module):
-    """A control law."""
+    """A control law: from time t [s], a `Measurement` and a memory to a `Correction` or a `Request`.
+
+    It changes throttles [-], deflections [rad] and rewind rates [m/s]. Everything is in SI and radians; body axes are
+    forward, starboard, down, ground axes north, east, down.
+    """
 
     @abc.abstractmethod
     def __call__(self, time: Float[Array, ""], measurement: Measurement, memory: Any) -> tuple[Correction, Any]:

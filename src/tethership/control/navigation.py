@@ -76,7 +76,10 @@ class NavigationLaw(AbstractLaw):
 
 
 class LineOfSightNavigationLaw(NavigationLaw):
-    """Navigation with the whole horizontal distance to the anchor as the error ahead, with the sign of that ahead."""
+    """Navigation with the whole horizontal distance to the anchor as the error ahead [m], with the sign of that ahead.
+
+    Attributes are those of `NavigationLaw`.
+    """
 
     def ahead(self, offset: Float[Array, "3"], nose: Float[Array, "2"]) -> Float[Array, ""]:
         """Return ±|ε_hor| [m], negative with the anchor ahead; arguments as in `NavigationLaw.ahead`."""

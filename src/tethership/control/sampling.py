@@ -28,7 +28,7 @@ class Sampling(eqx.Module):
 
 
 class Held(NamedTuple):
-    """What a sampled law holds.
+    """What a sampled law holds: changes of throttles [-], deflections [rad] and rewind rates [m/s].
 
     Attributes
     ----------

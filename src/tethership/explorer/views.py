@@ -6,9 +6,9 @@ from typing import Any
 from dash import html
 
 STATE = (
-    ("north", "north of the anchor", "m"),
-    ("east", "east of the anchor", "m"),
-    ("down", "altitude", "m"),
+    ("north", "north of the origin", "m"),
+    ("east", "east of the origin", "m"),
+    ("down", "above the origin", "m"),
     ("phi", "roll φ", "°"),
     ("theta", "pitch θ", "°"),
     ("psi", "heading ψ", "°"),
@@ -16,7 +16,11 @@ STATE = (
     ("v", "to starboard v", "m/s"),
     ("w", "downward w", "m/s"),
 )
-"""States at trim, with words and units."""
+"""States at trim, with words and units.
+
+x_P counts from the origin of the ground axes: the first anchor, unless the scenario puts that elsewhere. What is shown
+of `down` is −D.
+"""
 
 RESIDUAL = (("X", "N"), ("Y", "N"), ("Z", "N"), ("L", "N m"), ("M", "N m"), ("N", "N m"))
 """Force and moment left over, body axes."""
@@ -53,7 +57,8 @@ def trim_head(result: dict[str, Any]) -> Any:
 def trim_rest(result: dict[str, Any]) -> Any:
     """Return the numbers of a trim.
 
-    They are the place [m], angles [°], speeds [m/s], throttles [-], thrust and tensions [N] and what is left [N, N m].
+    They are the place of P [m], angles [°], speeds [m/s], throttles [-], thrust and tensions [N] and what is left
+    [N, N m].
     """
     state = result["state"]
     values = [(words, _number(-state[n] if n == "down" else state[n]), unit) for n, words, unit in STATE]
@@ -72,7 +77,7 @@ def trim_rest(result: dict[str, Any]) -> Any:
     left = [(name, f"{v:.2e}", unit) for (name, unit), v in zip(RESIDUAL, result["residual"], strict=True)]
     return html.Div(
         [
-            _table("Where the ship rests", values[:3] + values[3:]),
+            _table("Where the ship rests", values),
             _table("Thrusters: throttle, thrust", thrusters),
             _table("Cables", cables),
             _table("Force and moment left over", left),

@@ -12,7 +12,7 @@ from jaxtyping import Array, Float
 
 
 class AbstractAnchorMotion(eqx.Module):
-    """Where an anchor is, beside its place in the scenario, and how fast it moves."""
+    """Where an anchor is, beside its place in the scenario [m], and how fast it moves [m/s], ground axes."""
 
     @abc.abstractmethod
     def displacement(self, time: Float[Array, ""]) -> Float[Array, "3"]:

@@ -141,7 +141,10 @@ class AbstractApparentMass(eqx.Module):
 
 
 class PublishedApparentMass(AbstractApparentMass):
-    """As Eq. 1 is printed: nothing besides Mᵃ ẇ with the ground velocity (so no part of the air's motion)."""
+    """As Eq. 1 is printed: nothing besides Mᵃ ẇ [N, N m] with the ground velocity (so no part of the air's motion).
+
+    Attributes are those of `AbstractApparentMass`.
+    """
 
     volume: Float[Array, ""]
     centre: Float[Array, "3"]
@@ -157,12 +160,15 @@ class PublishedApparentMass(AbstractApparentMass):
         wind_rate_ship: Float[Array, "3"],
         wind_rate_fluid: Float[Array, "3"],
     ) -> Wrench:
-        """Return zero; arguments as in `AbstractApparentMass.wrench`."""
+        """Return zero [N, N m]; arguments as in `AbstractApparentMass.wrench`."""
         return Wrench(jnp.zeros(3), jnp.zeros(3))
 
 
 class KirchhoffApparentMass(AbstractApparentMass):
-    """Kirchhoff's equations for a closed body in air that itself moves and accelerates."""
+    """Kirchhoff's equations for a closed body in air that itself moves and accelerates: forces and moments [N, N m].
+
+    Attributes are those of `AbstractApparentMass`.
+    """
 
     volume: Float[Array, ""]
     centre: Float[Array, "3"]
@@ -178,7 +184,7 @@ class KirchhoffApparentMass(AbstractApparentMass):
         wind_rate_ship: Float[Array, "3"],
         wind_rate_fluid: Float[Array, "3"],
     ) -> Wrench:
-        """Return the wrench about P; arguments as in `AbstractApparentMass.wrench`.
+        """Return the wrench about P, body axes [N, N m]; arguments as in `AbstractApparentMass.wrench`.
 
         Notes
         -----

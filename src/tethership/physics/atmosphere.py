@@ -24,7 +24,7 @@ from tethership.spatial.constants import (
 
 
 class AbstractAtmosphere(eqx.Module):
-    """What gives the density of the air at an altitude."""
+    """What gives the density of the air ρ [kg/m³] at an altitude [m]."""
 
     @abc.abstractmethod
     def density(self, altitude: Float[Array, ""]) -> Float[Array, ""]:

@@ -182,7 +182,10 @@ class AbstractEnvelope(eqx.Module):
 
 
 class PublishedEnvelope(AbstractEnvelope):
-    """The paper's slices (Munk; Jones & DeLaurier), with local velocities and valid in reversed flow."""
+    """The paper's slices (Munk; Jones & DeLaurier), with local velocities and valid in reversed flow: loads [N, N m].
+
+    Attributes are those of `AbstractEnvelope`.
+    """
 
     centre: Float[Array, "3"]
     munk_factor: Float[Array, ""]
@@ -196,12 +199,18 @@ class PublishedEnvelope(AbstractEnvelope):
     isotropic_drag_area: Float[Array, ""] | None = None
 
     def potential(self, air_velocity: Float[Array, "3"], rates: Float[Array, "3"]) -> Wrench:
-        """Return η_k u μ_x v_⊥ over 0 ≤ ξ ≤ l_h; arguments as in `AbstractEnvelope.viscous`."""
+        """Return η_k u μ_x v_⊥ over 0 ≤ ξ ≤ l_h per ρ(k₂−k₁), about B, body axes [N m³/kg, N m⁴/kg].
+
+        The arguments are those of `AbstractEnvelope.viscous`: v_a of B [m/s] and ω [rad/s], body axes.
+        """
         return self.front.scaled(self.slice_efficiency).wrench(air_velocity, rates, slope_only=True)
 
 
 class ConsistentEnvelope(AbstractEnvelope):
-    """What the slices change in Kirchhoff's loads of the whole closed hull."""
+    """What the slices change in Kirchhoff's loads of the whole closed hull [N, N m].
+
+    Attributes are those of `AbstractEnvelope`.
+    """
 
     centre: Float[Array, "3"]
     munk_factor: Float[Array, ""]
@@ -215,6 +224,9 @@ class ConsistentEnvelope(AbstractEnvelope):
     isotropic_drag_area: Float[Array, ""] | None = None
 
     def potential(self, air_velocity: Float[Array, "3"], rates: Float[Array, "3"]) -> Wrench:
-        """Return (η_k − 1) · slices ahead of l_h − slices behind; arguments as in `AbstractEnvelope.viscous`."""
+        """Return (η_k − 1) · slices ahead of l_h − slices behind, per ρ(k₂−k₁), about B, body axes [N m³/kg, N m⁴/kg].
+
+        The arguments are those of `AbstractEnvelope.viscous`: v_a of B [m/s] and ω [rad/s], body axes.
+        """
         change = self.front.scaled(self.slice_efficiency - 1.0) + self.tail.scaled(jnp.asarray(-1.0))
         return change.wrench(air_velocity, rates, slope_only=False)

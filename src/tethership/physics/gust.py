@@ -20,7 +20,7 @@ NEVER = 1e9
 
 
 class AbstractGust(eqx.Module):
-    """A velocity added to the wind, the same everywhere."""
+    """A velocity added to the wind, ground axes [m/s], the same everywhere."""
 
     @abc.abstractmethod
     def velocity(self, time: Float[Array, ""]) -> Float[Array, "3"]:
@@ -53,7 +53,7 @@ class CosineGust(AbstractGust):
 
     @classmethod
     def silent(cls) -> "CosineGust":
-        """Return a gust that adds nothing, and begins after every flight: a switch that is off."""
+        """Return a gust that adds 0 [m/s] and begins at `NEVER` [s], after every flight: a switch that is off."""
         zero, one, never = (jnp.asarray(np.float64(value)) for value in (0.0, 1.0, NEVER))
         return cls(jnp.asarray(np.zeros(3)), never, one, zero)
 

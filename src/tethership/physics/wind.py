@@ -15,7 +15,7 @@ from jaxtyping import Array, Float
 
 
 class AbstractWind(eqx.Module):
-    """A steady field of wind, ground axes."""
+    """A steady field of wind, ground axes [m/s]."""
 
     @abc.abstractmethod
     def velocity(self, position: Float[Array, "3"]) -> Float[Array, "3"]:

@@ -53,7 +53,7 @@ class Instant(NamedTuple):
 
     @property
     def state(self) -> State:
-        """State of the ship."""
+        """State of the ship: velocity of P and ω, body axes [m/s, rad/s], φ, θ, ψ [rad], x_P, ground axes [m]."""
         return self.now.ship
 
     @property

@@ -58,12 +58,21 @@ def parts(plant: TetheredAirship) -> Layout:
 
 
 def open_loop(plant: TetheredAirship) -> Layout:
-    """Return the states of a plant whose channels are inputs: ship, actuators, parts of one's own."""
+    """Return the states of a plant whose channels are inputs.
+
+    They are those of the ship [m/s, rad/s, rad, m], what actuators that lag have reached [-, rad], and the states of
+    parts of one's own in their units.
+    """
     return SHIP.plus(actuators(plant)).plus(parts(plant))
 
 
 def closed_loop(loop: ClosedLoop) -> Layout:
-    """Return all states of a closed loop, in the order of its vector."""
+    """Return all states of a closed loop, in the order of its vector.
+
+    They are those of the ship [m/s, rad/s, rad, m], the cables' unstretched lengths [m], what actuators that lag have
+    reached [-, rad], parts of one's own in their units, and the law's memory, said to be in [-] for want of a unit of
+    its own. A sampled law adds what it holds: changes of throttle [-], deflection [rad] and rewind rate [m/s].
+    """
     names = loop.plant.part_names
     lengths = Layout(tuple(f"{LENGTH}{name}" for name in names.cables), ("m",) * len(names.cables))
     memories = jax.eval_shape(lambda: loop.unpack(jnp.zeros(size(loop))).law)
@@ -88,7 +97,17 @@ def size(loop: ClosedLoop) -> int:
 
 
 def open_state(plant: TetheredAirship, state: State, command: Command) -> Float[Array, "n"]:
-    """Return the vector of `open_loop` at a point: actuators have reached the command, parts are at rest."""
+    """Return the vector of `open_loop` at a point: actuators have reached the command, parts are at rest at t = 0.
+
+    Parameters
+    ----------
+    plant : TetheredAirship
+        With its cables at their lengths at the start.
+    state : State
+        Of the ship [m/s, rad/s, rad, m].
+    command : Command
+        Throttles δ [-] and deflections [rad].
+    """
     now = jnp.zeros(())
     own = plant.actuators_at_rest(command)
     cables = plant.cable_states(now, state, plant.initial_lengths())
@@ -101,8 +120,11 @@ class OpenState(NamedTuple):
     Attributes
     ----------
     ship : State
+        Velocity and ω, body axes [m/s, rad/s], φ, θ, ψ [rad], x_P, ground axes [m].
     actuators : ActuatorState
+        Throttles [-] and deflections [rad] reached by the channels that lag.
     parts : tuple of Float[Array, "states"]
+        In their units.
     """
 
     ship: State
@@ -111,7 +133,11 @@ class OpenState(NamedTuple):
 
 
 def split_open(plant: TetheredAirship, vector: Float[Array, "n"]) -> OpenState:
-    """Return the states of ship, actuators and parts from the vector of `open_loop`."""
+    """Return the states of ship, actuators and parts from the vector of `open_loop`, shape (n,).
+
+    Its order is u, v, w [m/s], p, q, r [rad/s], φ, θ, ψ [rad], N, E, D [m], the throttles [-] and deflections [rad]
+    reached by the channels that lag, then the states of each part in their units.
+    """
     counts = [len(STATE_NAMES), len(plant.thrusters.slow), len(plant.surfaces.slow)]
     counts += [len(part.states()) for part in plant.parts]
     ends = np.cumsum(counts)

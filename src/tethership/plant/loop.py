@@ -47,7 +47,11 @@ class ClosedLoop(eqx.Module):
     allocation: dict[str, Command] = eqx.field(default_factory=dict)
 
     def rest(self, state: State) -> PlantState:
-        """Return all states at the start of a flight: every part at its rest about a state of the ship."""
+        """Return all states at the start of a flight, t = 0: every part at its rest about a state of the ship.
+
+        Cables have their lengths at the start [m], actuators have reached the trimmed command after clipping
+        [-, rad], and a sampled law holds no correction.
+        """
         now, lengths = jnp.zeros(()), self.plant.initial_lengths()
         cables = self.plant.cable_states(now, state, lengths)
         parts = self.plant.parts_at_rest(now, state, cables)
@@ -57,11 +61,11 @@ class ClosedLoop(eqx.Module):
         return PlantState(state, lengths, actuators, parts, memory, self._held_at_first())
 
     def initial(self, state: State) -> Float[Array, "n"]:
-        """Return `rest` as one vector."""
+        """Return `rest` as one vector, shape (n,), in the order of `Layout`: the ship's [m/s, rad/s, rad, m] first."""
         return ravel_pytree(self.rest(state))[0]
 
     def unpack(self, vector: Float[Array, "n"]) -> PlantState:
-        """Return the states of all parts from one vector of them."""
+        """Return the states of all parts from one vector of them, the ship's [m/s, rad/s, rad, m] first."""
         return ravel_pytree(self._empty())[1](vector)
 
     def _empty(self) -> PlantState:
@@ -93,7 +97,23 @@ class ClosedLoop(eqx.Module):
         cables: tuple[CableState, ...],
         told: Mapping[str, Any] | None = None,
     ) -> Measurement:
-        """Return what the sensors say: nothing of the plant but this reaches a law; `told` by parts of one's own."""
+        """Return what the sensors say: nothing of the plant but this reaches a law.
+
+        Parameters
+        ----------
+        state : State
+            Of the ship [m/s, rad/s, rad, m].
+        lengths : Float[Array, "cables"]
+            L_t [m].
+        cables : tuple of CableState
+            From `TetheredAirship.cable_states`.
+        told : mapping, optional
+            What parts of one's own read, by name, in their units.
+
+        Notes
+        -----
+        Velocity is taken at B, V_B = V + ω × q_B, body axes; RoC = −i₃·R V_B, upward [m/s].
+        """
         rotation = rotation_matrix(state.attitude)
         velocity_b = state.velocity + jnp.cross(state.rates, self.plant.ship.buoyancy.centre)
         count = len(cables)
@@ -110,7 +130,9 @@ class ClosedLoop(eqx.Module):
         )
 
     def allocated(self, asked: Asked) -> Correction:
-        """Return what a law asks, its named channels and demands shared out to throttles and deflections.
+        """Return what a law asks, its named channels and demands shared out to throttles [-] and deflections [rad].
+
+        A demand d [-] adds its share times d to every channel, a channel's own change is added to it as it is.
 
         Raises
         ------
@@ -183,7 +205,11 @@ class ClosedLoop(eqx.Module):
         return self.rate(self.instant(time, vector))
 
     def rate(self, at: Instant) -> Float[Array, "n"]:
-        """Return the time derivative of the vector of all states at an instant."""
+        """Return the time derivative of the vector of all states at an instant, shape (n,).
+
+        The ship's part is V̇, ω̇ [m/s², rad/s²], body axes, the Euler rates [rad/s] and ẋ_P, ground axes [m/s]; then
+        dL_t/dt = −Ψ [m/s], the actuators' rates [1/s, rad/s], parts and memory per second; what is held does not move.
+        """
         ship = derivative(at.now.ship, at.loads, self.plant.ship, self.plant.environment)
         actuators = self.plant.actuator_rates(at.now.actuators, at.asked)
         held = jax.tree.map(jnp.zeros_like, at.now.held)
@@ -211,7 +237,7 @@ class ClosedLoop(eqx.Module):
         return ravel_pytree(at.now._replace(law=memory, held=held))[0]
 
     def act(self, vector: Float[Array, "n"]) -> Float[Array, "n"]:
-        """Return all states after the delay, t = kT + d: the correction that waited is in effect."""
+        """Return all states after the delay, t = kT + d [s]: the correction that waited is in effect."""
         now = self.unpack(vector)
         return ravel_pytree(now._replace(held=Held(now.held.waiting, now.held.waiting)))[0]
 

@@ -56,13 +56,21 @@ class TetheredAirship(eqx.Module):
         return PartNames.numbered(self.ship.thrusters.count, self.ship.fins.count, len(self.cables), len(self.parts))
 
     def actuated(self, own: ActuatorState, asked: Command) -> Command:
-        """Return what the actuated channels do, for their states and what they are asked."""
+        """Return what the actuated channels do, throttles [-] and deflections [rad].
+
+        Parameters
+        ----------
+        own : ActuatorState
+            Throttles [-] and deflections [rad] reached by the channels that lag.
+        asked : Command
+            Of all channels, after clipping [-, rad].
+        """
         return Command(
             self.thrusters.output(own.thrusters, asked.throttle), self.surfaces.output(own.surfaces, asked.deflection)
         )
 
     def actuators_at_rest(self, asked: Command) -> ActuatorState:
-        """Return the states of the actuated channels that have done what they are asked."""
+        """Return the states [-, rad] of the channels that lag once they have done what they are asked [-, rad]."""
         return ActuatorState(self.thrusters.rest(asked.throttle), self.surfaces.rest(asked.deflection))
 
     def actuator_rates(self, own: ActuatorState, asked: Command) -> ActuatorState:
@@ -97,7 +105,7 @@ class TetheredAirship(eqx.Module):
         )
 
     def parts_at_rest(self, time: Float[Array, ""], state: State, cable_states: tuple[CableState, ...]) -> PartStates:
-        """Return the states of the parts that no longer change, in their units."""
+        """Return the states of the parts that no longer change at t [s], in their units; arguments as in `seen`."""
         if not self.parts:
             return ()
         seen = self.seen(time, state, cable_states)
@@ -106,7 +114,7 @@ class TetheredAirship(eqx.Module):
     def part_rates(
         self, time: Float[Array, ""], state: State, cable_states: tuple[CableState, ...], own: PartStates
     ) -> PartStates:
-        """Return the rates of the parts' states [their unit per second]."""
+        """Return the rates at t [s] of the parts' states `own` [their unit per second]; the rest as in `seen`."""
         if not self.parts:
             return ()
         seen = self.seen(time, state, cable_states)
@@ -115,7 +123,7 @@ class TetheredAirship(eqx.Module):
     def readings(
         self, time: Float[Array, ""], state: State, cable_states: tuple[CableState, ...], own: PartStates
     ) -> dict[str, Float[Array, ""]]:
-        """Return what the parts tell the laws, by name."""
+        """Return what the parts tell the laws at t [s], by name, each in its own unit; arguments as in `part_rates`."""
         if not self.parts:
             return {}
         seen = self.seen(time, state, cable_states)
@@ -178,7 +186,10 @@ class TetheredAirship(eqx.Module):
         lengths: Float[Array, "cables"],
         own: PartStates | None = None,
     ) -> State:
-        """Return the time derivative of the state; arguments as in `wrenches` and `cable_states`."""
+        """Return the time derivative of the state; arguments as in `wrenches` and `cable_states`.
+
+        Its fields are V̇, ω̇, body axes [m/s², rad/s²], the Euler rates [rad/s] and ẋ_P, ground axes [m/s].
+        """
         loads = self.wrenches(time, state, command, self.cable_states(time, state, lengths), own)
         return derivative(state, loads, self.ship, self.environment)
 
@@ -195,7 +206,7 @@ class TetheredAirship(eqx.Module):
         return dataclasses.replace(self, environment=self.environment.with_a_gust())
 
     def with_winches_held(self) -> "TetheredAirship":
-        """Return the plant with winches that take in nothing by themselves; what laws ask they still do."""
+        """Return the plant with default rewind rates Ψ̄ of 0 [m/s]: winches do only what laws ask."""
         cables = tuple(
             dataclasses.replace(
                 cable, winch=dataclasses.replace(cable.winch, default_rate=jnp.zeros_like(cable.winch.default_rate))

@@ -34,12 +34,12 @@ class State(eqx.Module):
     position: Float[Array, "3"]
 
     def as_vector(self) -> Float[Array, "12"]:
-        """Return the twelve states as one vector, in the order of `STATE_NAMES`."""
+        """Return the twelve states as one vector, in the order of `STATE_NAMES` [m/s, rad/s, rad, m, three of each]."""
         return jnp.concatenate([self.velocity, self.rates, self.attitude, self.position])
 
     @classmethod
     def from_vector(cls, vector: Float[Array, "12"]) -> "State":
-        """Return the state of a vector of twelve."""
+        """Return the state of a vector of twelve: u, v, w [m/s], p, q, r [rad/s], φ, θ, ψ [rad], N, E, D [m]."""
         return cls(vector[0:3], vector[3:6], vector[6:9], vector[9:12])
 
     @classmethod

@@ -28,7 +28,10 @@ LONGEST_NAME = 63
 
 
 def to_frame(data: xr.Dataset) -> "pd.DataFrame":
-    """Return a flight's dataset as a pandas table, columns named as this module says."""
+    """Return a flight's dataset as a pandas table: a row an instant, index `time [s]`, columns like `tension_nose [N]`.
+
+    Every column has the unit of its output in its name; a dataset that says none counts as [1].
+    """
     import pandas as pd
 
     columns: dict[str, np.ndarray] = {}

@@ -145,7 +145,15 @@ def seconds_above(time: Array, value: Array, threshold: float) -> float:
 
 
 def mean(time: Array, value: Array) -> float:
-    """Return the time average of a signal, trapezoidal; unit of the value."""
+    """Return the time average of a signal, trapezoidal, in the signal's unit.
+
+    Parameters
+    ----------
+    time : Array
+        t [s], rising, shape (n,).
+    value : Array
+        Samples, shape (n,), any unit; where all times are one the first sample is the average.
+    """
     span = time[-1] - time[0]
     return float(np.trapezoid(value, time) / span) if span > 0 else float(value[0])
 

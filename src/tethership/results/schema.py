@@ -119,8 +119,8 @@ VARIABLES: dict[str, Variable] = {
     "cable_length": Variable("m", ("cable",), "unstretched length"),
     "rewind_rate": Variable("m/s", ("cable",), "rate at which the winch takes cable in"),
     "misalignment": Variable("rad", ("cable",), "horizontal angle from nose to anchor, positive to port"),
-    "part_states": Variable("SI", ("part_state",), "states of parts of one's own, in their units"),
-    "readings": Variable("own", ("reading",), "what parts of one's own tell the laws, in their units"),
+    "part_states": Variable("its own unit", ("part_state",), "states of parts of one's own"),
+    "readings": Variable("its own unit", ("reading",), "what parts of one's own tell the laws"),
     "clearance": Variable("m", (), "height of the hull's lowest point above ground"),
 }
 """All outputs by name; every one has `time` [s] as its first dimension."""

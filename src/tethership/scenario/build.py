@@ -56,7 +56,16 @@ def _line(config: CableConfig, formulation: str) -> AbstractTensionLaw:
 
 
 def build_system(config: ScenarioConfig, reference_point: Float[Array, "3"] | None = None) -> TetheredAirship:
-    """Return the plant of a scenario; `reference_point` as in `build_ship`."""
+    """Return the plant of a scenario, SI and radians; can be traced.
+
+    Parameters
+    ----------
+    config : ScenarioConfig
+        A validated scenario.
+    reference_point : Float[Array, "3"], optional
+        P from the origin of the vehicle's body axes [m]; the origin itself if not given. All points of the ship are
+        then counted from P, and the origin from there is the plant's `origin`.
+    """
     shift = jnp.zeros(3) if reference_point is None else jnp.asarray(reference_point)
     return TetheredAirship(
         ship=build_ship(config.vehicle, config.formulation, shift),
@@ -100,7 +109,7 @@ def assemble(config: ScenarioConfig, reference_point: Float[Array, "3"] | None =
     config : ScenarioConfig
         A validated scenario.
     reference_point : Float[Array, "3"], optional
-        As in `build_ship`.
+        P from the origin of the vehicle's body axes [m]; the origin itself if not given.
     """
     shift = jnp.zeros(3) if reference_point is None else jnp.asarray(reference_point, dtype=float)
     return _compiled(config.as_arrays(), shift)

@@ -107,7 +107,11 @@ def ground_level(config: ScenarioConfig) -> Float[Array, ""]:
 
 
 def build_environment(config: ScenarioConfig) -> Environment:
-    """Return air, wind, gusts, fluctuations and ground."""
+    """Return air, wind, gusts, fluctuations and ground.
+
+    Gravity is the standard one down [m/s²], the ground's down coordinate that of `ground_level` [m]; a gust given as a
+    fraction [-] has that part of `wind.speed` [m/s] as its peak.
+    """
     ground = ground_level(config)
     effect = config.ground.effect_coefficient
     wind = build_wind(config.wind, ground)

@@ -48,7 +48,7 @@ OUTLINE = 41
 
 
 def build_hull(config: HullConfig) -> BodyOfRevolution:
-    """Return the hull's shape."""
+    """Return the hull's shape: a body of revolution of length L and largest diameter D [m], by any profile."""
     length, diameter = jnp.asarray(config.length), jnp.asarray(config.diameter)
     match config:
         case GertlerHull():
@@ -178,7 +178,14 @@ def build_thrusters(config: VehicleConfig, shift: Float[Array, "3"]) -> Thruster
 
 
 def build_actuators(rows: Sequence[ThrusterConfig] | Sequence[FinConfig]) -> Actuators:
-    """Return what the channels of a vehicle do with what they are asked; one without lag and limit has no state."""
+    """Return what the channels of a vehicle do with what they are asked; one without lag and limit has no state.
+
+    Parameters
+    ----------
+    rows : sequence of ThrusterConfig or of FinConfig
+        With lag τ [s], rate limit [1/s for a throttle, rad/s for a deflection] and a thruster's dead band [-]. One with
+        a rate limit alone follows with the lag `QUICK` [s].
+    """
     slow = [i for i, row in enumerate(rows) if row.lag is not None or row.rate_limit is not None]
     bands = {i: band for i, row in enumerate(rows) if (band := getattr(row, "dead_band", None)) is not None}
     return Actuators(

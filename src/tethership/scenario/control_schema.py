@@ -32,7 +32,19 @@ def check_layers(names: Iterable[str]) -> tuple[str, ...]:
 
 
 class AttitudeConfig(Table):
-    """Table A.1 of the paper; shares as Eq. 40 with the modulus of the ratio of arms, ½·9.07/2.0."""
+    """Gains of SAS/attitude, Table A.1 of the paper; shares as Eq. 40, the ratio of arms by its modulus, ½·9.07/2.0.
+
+    Attributes
+    ----------
+    roll_rate_gain, pitch_rate_gain, yaw_rate_gain : float
+        κ_p, κ_q, κ_r [s/rad].
+    roll_gain, pitch_gain : float
+        κ_φ, κ_θ [1/rad].
+    roll_target, pitch_target : float
+        φ̄, θ̄ [rad].
+    roll_share, pitch_share, yaw_share : dict of str to float
+        Throttle [-] of each thruster, or deflection of each fin [rad], per unit of demand, by its name.
+    """
 
     roll_rate_gain: Annotated[float, Quantity("s/rad")] = 2.0
     pitch_rate_gain: Annotated[float, Quantity("s/rad")] = 1.0
@@ -47,7 +59,17 @@ class AttitudeConfig(Table):
 
 
 class RewindConfig(Table):
-    """Table A.2 of the paper."""
+    """Gains of the rewind law, Table A.2 of the paper.
+
+    Attributes
+    ----------
+    gain : float
+        κ_Ψ, loss of rewind rate per tension above the threshold [m/(s N)].
+    threshold : float
+        F′, tension at the tether point above which the winch slows down [N].
+    slowest_rate : float
+        Ψ_min, below which the law does not slow it [m/s].
+    """
 
     gain: Annotated[float, Quantity("m/(s N)")] = 0.005
     threshold: Annotated[float, Quantity("N", low=0.0)] = 144.3
@@ -55,10 +77,21 @@ class RewindConfig(Table):
 
 
 class HeadingConfig(Table):
-    """Table A.3 of the paper.
+    """Gains of the heading law, Table A.3 of the paper.
 
-    `fade_radius` 0 never fades, `measured_behind` moves the point from which χ is measured aft; `angle` says whether
-    the law acts on χ itself (`full`), on arcsin sin χ (`sine`) or on the angle to the line, either way round (`line`).
+    Attributes
+    ----------
+    gain : float
+        κ_χ [1/rad].
+    fade_radius : float
+        Horizontal distance from anchor to tether point within which the law fades out linearly [m]; 0 never fades.
+    measured_behind : float
+        How far aft of the tether point, along the hull's axis, χ is measured [m].
+    angle : str
+        The law acts on χ itself (`full`), on arcsin sin χ (`sine`) or on the angle to the line, either way round
+        (`line`).
+    share : dict of str to float
+        Throttle [-] of each thruster, or deflection of each fin [rad], per unit of demand, by its name.
     """
 
     gain: Annotated[float, Quantity("1/rad")] = 5.0
@@ -69,7 +102,23 @@ class HeadingConfig(Table):
 
 
 class NavigationConfig(Table):
-    """Table A.4 of the paper; `range` is the error ahead: along the nose, or the whole horizontal distance."""
+    """Gains of the navigation law, Table A.4 of the paper.
+
+    Attributes
+    ----------
+    position_gain, vertical_gain : float
+        κ_hor, κ_ver [1/m].
+    speed_gain, climb_gain : float
+        κ_U, κ_RoC [s/m].
+    speed_slope : float
+        Set-points of speed and climb per metre of error [1/s].
+    largest_speed, largest_climb : float
+        Bounds of these set-points [m/s].
+    range : str
+        The error ahead: along the nose, or the whole horizontal distance.
+    forward_share, vertical_share : dict of str to float
+        Throttle [-] of each thruster, or deflection of each fin [rad], per unit of forward and downward demand.
+    """
 
     position_gain: Annotated[float, Quantity("1/m")] = 0.0033
     vertical_gain: Annotated[float, Quantity("1/m")] = 0.0033
@@ -130,7 +179,7 @@ class ControlConfig(Table):
         return self
 
     def check_period(self, time_limit: float) -> None:
-        """Raise ValueError if a law would look only once in a flight of so many seconds."""
+        """Raise ValueError if the laws' period is longer than a flight of `time_limit` [s]: they look once then."""
         if self.period is not None and self.period > time_limit:
             raise ValueError(
                 f"control.period {self.period:g} s is longer than the flight, stop.time_limit {time_limit:g} s; "
@@ -138,7 +187,7 @@ class ControlConfig(Table):
             )
 
     def shares(self) -> Iterator[tuple[str, Share]]:
-        """Return all shares with their dotted names under `control`."""
+        """Return all shares by their dotted names under `control`: throttles [-], deflections [rad] per unit."""
         for law in ("attitude", "heading", "navigation"):
             yield from ((f"{law}.{key}", share) for key, share in getattr(self, law) if isinstance(share, dict))
         yield from ((f"allocation.{demand}", share) for demand, share in self.allocation.items())

@@ -64,7 +64,11 @@ def _law(config: ScenarioConfig, name: str) -> AbstractLaw:
 
 
 def build_allocation(config: ScenarioConfig) -> dict[str, Command]:
-    """Return the shares of all channels in the demands that laws of one's own may make."""
+    """Return the shares of all channels in the demands that laws of one's own may make, by the demand's name.
+
+    A share is a throttle of each thruster [-] and a deflection of each fin [rad] per unit of demand. With `gain_thrust`
+    F [N] given, throttles are times F over the thruster's own nominal thrust.
+    """
     return {
         demand: Command(_shares(share, config), _fin_shares(share, config))
         for demand, share in config.control.allocation.items()
@@ -72,7 +76,7 @@ def build_allocation(config: ScenarioConfig) -> dict[str, Command]:
 
 
 def build_sampling(config: ScenarioConfig) -> Sampling | None:
-    """Return when the laws look and act; None where they are continuous."""
+    """Return the period T [s] at which the laws look and the delay d [s] until they act; None if continuous."""
     control = config.control
     if control.period is None:
         return None

@@ -42,7 +42,16 @@ def make_part(config: OwnPartConfig) -> AbstractPart:
 
 
 def make_line(config: OwnLine, cable: CableConfig) -> AbstractTensionLaw:
-    """Return a line of one's own with its numbers and those of its cable; raises ConfigError as `_made`."""
+    """Return a line of one's own with its numbers and those of its cable; raises ConfigError as `_made`.
+
+    Parameters
+    ----------
+    config : OwnLine
+        Class and numbers, in units of the class's own.
+    cable : CableConfig
+        Gives `stiffness` [N], `joint_start` and `joint_end` [-], `diameter` [m] and `linear_density` [kg/m], each where
+        the class has a field of that name.
+    """
     what = f"line of {cable.name!r}"
     kind = _kind(config, what, AbstractTensionLaw, "tethership.physics.cable.AbstractTensionLaw")
     known = ("stiffness", "joint_start", "joint_end", "diameter", "linear_density")

@@ -48,7 +48,7 @@ class OwnLine(OwnCode):
     """A line of one's own, a subclass of `physics.cable.AbstractTensionLaw`.
 
     The class is given its numbers and, where it has fields of these names, the cable's `stiffness`, `joint_start`,
-    `joint_end`, `diameter` and `linear_density`.
+    `joint_end`, `diameter` and `linear_density`, in [N, -, -, m, kg/m].
     """
 
 

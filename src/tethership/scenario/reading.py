@@ -37,7 +37,10 @@ def check_path(path: str | Path) -> None:
 
 
 def check_file_to_read(path: Path, most_bytes: int = MOST_BYTES, what: str = "") -> None:
-    """Raise ConfigError where a file (of `what`) is not there, not regular (a pipe never ends) or too large."""
+    """Raise ConfigError where a file (of `what`) is not there, not regular (a pipe never ends) or too large.
+
+    Too large is one of more than `most_bytes` [bytes].
+    """
     named = f"{what} of {path}" if what else f"{path}"
     check_path(path)
     try:

@@ -17,7 +17,7 @@ Newtons = Annotated[float, Quantity("N", positive=True)]
 
 
 class StandardAir(Table):
-    """ISA troposphere."""
+    """ISA troposphere, its origin `origin_altitude` above the sea [m], warmer by `temperature_offset` [K]."""
 
     model: Literal["isa"] = "isa"
     origin_altitude: Annotated[float, Quantity("m", low=-1000.0, high=10_000.0)] = 0.0
@@ -25,7 +25,7 @@ class StandardAir(Table):
 
 
 class ConstantAir(Table):
-    """The same density everywhere."""
+    """The same density ρ everywhere [kg/m³]."""
 
     model: Literal["constant"]
     density: Annotated[float, Quantity("kg/m^3", low=0.0)]
@@ -35,7 +35,9 @@ AirConfig = Annotated[StandardAir | ConstantAir, Field(discriminator="model")]
 
 
 class GroundConfig(Table):
-    """The ground: `anchor_height` below the origin (the first anchor); without it at the lowest anchor.
+    """The ground: `anchor_height` [m] below the origin (the first anchor); without it at the lowest anchor.
+
+    `effect_coefficient` c [1/m] is that of the ground effect: upward air of c times ground speed times height [m/s].
 
     With `anchor_height` given (a mast), a hull that touches the ground ends the flight; without it the least clearance
     is only recorded and told. A trim whose hull lies below the ground is no equilibrium either way.
@@ -46,7 +48,7 @@ class GroundConfig(Table):
 
 
 class WinchConfig(Table):
-    """The drive of a cable."""
+    """The drive of a cable: its default rewind rate Ψ̄ [m/s], and the largest rate in either direction [m/s]."""
 
     rewind_rate: Speed
     fastest_rate: Speed
@@ -59,7 +61,10 @@ class WinchConfig(Table):
 
 
 class SteadyMotionConfig(Table):
-    """An anchor under way at constant velocity over the ground: a truck, a ship. It keeps its height."""
+    """An anchor under way at constant velocity over the ground: a truck, a ship. It keeps its height.
+
+    `velocity` is in ground axes: north, east, and 0 down [m/s].
+    """
 
     model: Literal["steady"]
     velocity: Annotated[Vector, Quantity("m/s", depth=1)]
@@ -74,7 +79,10 @@ class SteadyMotionConfig(Table):
 
 
 class HarmonicMotionConfig(Table):
-    """An anchor that swings about its place: amplitude · sin(2π t/period + phase). A ship is trimmed on its place."""
+    """An anchor that swings about its place: amplitude · sin(2π t/period + phase). A ship is trimmed on its place.
+
+    `amplitude` is along north, east, down [m], `period` in [s], `phase` in [rad].
+    """
 
     model: Literal["harmonic"]
     amplitude: Point
@@ -92,7 +100,7 @@ class CatenaryLine(Table):
 
 
 class PublishedLine(Table):
-    """The paper's line: catenary, joint and spring by its elongation."""
+    """The paper's line: catenary, joint and spring by its elongation e = |d|/L_t [-]."""
 
     model: Literal["published"]
 
@@ -115,9 +123,38 @@ LINES = {"consistent": "catenary", "published": "published"}
 
 
 class CableConfig(Table):
-    """One cable; `tether_point` from the origin of the body axes, `anchor` in ground axes.
+    """One cable.
 
-    `load_reference` is where the airspeed of the cable's wind load is taken: a fraction of the span from the anchor.
+    Attributes
+    ----------
+    name : str
+        Its name.
+    tether_point : tuple of float
+        TP from the origin of the vehicle's body axes, body axes [m].
+    anchor : tuple of float
+        x_AP, ground axes [m].
+    length : float
+        Unstretched length at the start L_t [m].
+    diameter : float
+        For drag [m].
+    linear_density : float
+        Mass per unstretched length [kg/m].
+    stiffness : float
+        EA, force per strain [N].
+    breaking_force : float
+        F_b [N].
+    joint_start, joint_end : float
+        e_c and e_e, elongations between which the paper's line has its joint [-].
+    cross_flow_drag_coefficient, longitudinal_drag_coefficient : float
+        C_dc, C_dl on the diameter [-].
+    load_reference : float
+        Where the airspeed of the cable's wind load is taken: a fraction of the span from the anchor [-].
+    line : table, optional
+        Model of its line; that of the formulation if left out.
+    anchor_motion : table, optional
+        How its anchor moves; it stands still if left out.
+    winch : WinchConfig
+        Its drive.
     """
 
     name: Word
@@ -155,12 +192,13 @@ class TrimConfig(Table):
 
     `unknowns` are names of the motion's quantities (velocity_north, velocity_east, velocity_down, p, q, r, phi,
     theta, psi, north, east, down), of thrusters or fins, `throttle` (all thrusters) or `deflection` (all fins).
-    `velocity` is over the ground, in ground axes; where position or attitude are looked for, the search starts
-    there. With `hold = "tether_point"` the first cable's tether point is put at `elongation` times its length
-    from the anchor, at `elevation` and `bearing` from there.
+    `velocity` is that of P over the ground, with an anchor under way over that, in ground axes [m/s]; where `position`
+    [m] or `attitude` [rad] are looked for, the search starts there. With `hold = "tether_point"` the first cable's
+    tether point is put at `elongation` [-] times its length from the anchor, at `elevation` above the horizon and
+    `bearing` clockwise from north [rad].
 
-    A free ship in calm air may turn steadily: `turn_rate` is ψ̇, with φ, θ, speed and height constant. `pull_up_rate` is
-    θ̇ of a pull-up, a balance of the instant. p, q, r follow from them.
+    A free ship in calm air may turn steadily: `turn_rate` is ψ̇ [rad/s], with φ, θ, speed and height constant.
+    `pull_up_rate` is θ̇ [rad/s] of a pull-up, a balance of the instant. p, q, r follow from them.
     """
 
     hold: Literal["tether_point", "reference_point"] = "tether_point"
@@ -176,14 +214,14 @@ class TrimConfig(Table):
 
 
 class StartConfig(Table):
-    """How the flight's start differs from trim; `hold` is the point that stays where it is."""
+    """How the flight's start differs from trim: by what is added to φ, θ, ψ [rad]; `hold` is the point that stays."""
 
     attitude_offset: Annotated[Vector, Quantity("rad", depth=1)] = (0.0, 0.0, 0.0)
     hold: Literal["tether_point", "reference_point"] = "tether_point"
 
 
 class StopConfig(Table):
-    """What ends a flight."""
+    """What ends a flight: unstretched cable length when docked [m], time limit [s], largest |θ| [rad]."""
 
     cable_length: Annotated[float, Quantity("m", positive=True)] = 1.5
     time_limit: Seconds = 200.0
@@ -191,7 +229,7 @@ class StopConfig(Table):
 
 
 class LimitsConfig(Table):
-    """Tensions to be watched; `cable_break` is that of the weakest cable, and needed only where there is none."""
+    """Tensions to be watched [N]; `cable_break` is that of the weakest cable, and needed only where there is none."""
 
     control_threshold: Newtons
     envelope_tear: Newtons

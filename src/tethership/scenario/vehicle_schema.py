@@ -21,7 +21,17 @@ NotNegative = Annotated[float, Quantity("1", low=0.0, sourced=True)]
 
 
 class BodyConfig(Table):
-    """Mass, centre of gravity and inertia, from the origin of the body axes."""
+    """Mass, centre of gravity and inertia.
+
+    Attributes
+    ----------
+    mass : float
+        m, lifting gas included [kg].
+    centre_of_gravity : tuple of float
+        G from the origin of the body axes, body axes [m].
+    inertia : tuple of tuple of float
+        J about the origin of the body axes, not about G, off-diagonal entries as in the matrix [kg m²].
+    """
 
     mass: Annotated[float, Quantity("kg", positive=True, sourced=True)]
     centre_of_gravity: Position
@@ -44,7 +54,10 @@ class BodyConfig(Table):
 
 
 class GertlerHull(Table):
-    """Gertler hull by its six coefficients."""
+    """Gertler hull by its length L and largest diameter D [m] and its six coefficients a₁ … a₆ [-].
+
+    (r/D)² = Σ a_i Xⁱ with X = ξ/L from the nose; they add up to 0.
+    """
 
     profile: Literal["gertler"]
     length: Length
@@ -53,7 +66,19 @@ class GertlerHull(Table):
 
 
 class GertlerShapeHull(Table):
-    """Gertler hull by its shape parameters."""
+    """Gertler hull by its shape parameters.
+
+    Attributes
+    ----------
+    length, diameter : float
+        L and largest diameter D [m].
+    largest_section : float
+        Station of the largest section over the length, m [-].
+    nose_radius, tail_radius : float
+        Radii of curvature at nose and tail times L/D², r₀ and r₁ [-].
+    prismatic_coefficient : float
+        Volume over that of the cylinder around the hull, C_p [-].
+    """
 
     profile: Literal["gertler_shape"]
     length: Length
@@ -65,7 +90,7 @@ class GertlerShapeHull(Table):
 
 
 class EllipsoidHull(Table):
-    """Ellipsoid of revolution."""
+    """Ellipsoid of revolution of a length L and a largest diameter D [m]."""
 
     profile: Literal["ellipsoid"]
     length: Length
@@ -76,14 +101,26 @@ HullConfig = Annotated[GertlerHull | GertlerShapeHull | EllipsoidHull, Field(dis
 
 
 class BuoyancyConfig(Table):
-    """Displaced volume and its centre, from the origin of the body axes."""
+    """Displaced volume 𝒱 [m³] and its centre B, from the origin of the body axes, body axes [m]."""
 
     volume: Annotated[float, Quantity("m^3", positive=True, sourced=True)]
     centre: Position
 
 
 class FactorsConfig(Table):
-    """Apparent mass by published factors."""
+    """Apparent mass by published factors.
+
+    Attributes
+    ----------
+    k1 : float
+        Along the axis, over the displaced mass [-].
+    k2, k3 : float
+        Across it, over the displaced mass, both the same [-].
+    k_rotational : float
+        k′, apparent inertia over that of the displaced air as a rigid body [-].
+    gyration_radius_squared : tuple of float
+        Squared radii of gyration of the displaced air about the pitch and yaw axes at B, J₂ and J₃ [m²].
+    """
 
     model: Literal["factors"]
     k1: NotNegative
@@ -100,7 +137,7 @@ class FactorsConfig(Table):
 
 
 class LambConfig(Table):
-    """Apparent mass by Lamb's formulas from the hull's length over diameter, or a given fineness ratio."""
+    """Apparent mass by Lamb's formulas from the hull's length over diameter [-], or a given fineness ratio [-]."""
 
     model: Literal["lamb"]
     fineness: Annotated[float, Quantity("1", positive=True, sourced=True)] | None = None
@@ -114,7 +151,21 @@ SLENDER = 1.5
 
 
 class EnvelopeConfig(Table):
-    """Hull loads besides apparent mass."""
+    """Hull loads besides apparent mass.
+
+    Attributes
+    ----------
+    axial_drag_coefficient : float, optional
+        C_Dh0 on the displaced volume to the power 2/3 [-].
+    cross_flow_drag_coefficient : float, optional
+        C_Dc on the local diameter [-].
+    drag_coefficient : float, optional
+        C_D on the frontal area, in place of these two, for a hull that is nearly a sphere [-].
+    slice_efficiency : float
+        η_k, factor on the potential flow ahead of l_h [-].
+    potential_length : float
+        l_h, from the nose to where the potential flow ends [m].
+    """
 
     axial_drag_coefficient: NotNegative | None = None
     cross_flow_drag_coefficient: NotNegative | None = None
@@ -134,10 +185,35 @@ class EnvelopeConfig(Table):
 
 
 class FinConfig(Table):
-    """One fin; roll angle 0 is starboard, 90° down.
+    """One fin.
 
     Its deflection follows what it is asked within `largest_deflection`, at most at `rate_limit`, with a first-order lag
     of time constant `lag`; what is left out is ideal.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    roll : float
+        Roll angle of its span about the hull's axis: 0 starboard, ½π down [rad].
+    area : float
+        S [m²].
+    lift_slope : float
+        C_Nα, slope of the normal force [1/rad].
+    efficiency : float
+        η_f [-].
+    cross_flow_drag_coefficient, axial_drag_coefficient : float
+        C_Dc, C_D0 on its area [-].
+    aerodynamic_station, cross_flow_station : float
+        Where the attached normal force and the cross-flow drag act, forward of the origin of the body axes [m].
+    distance_from_axis : float
+        Of both points from the hull's axis [m].
+    largest_deflection : float
+        To either side [rad].
+    lag : float, optional
+        τ [s].
+    rate_limit : float, optional
+        Fastest change of the deflection [rad/s].
     """
 
     name: Part
@@ -163,8 +239,29 @@ class FinConfig(Table):
 class ThrusterConfig(Table):
     """One thruster.
 
-    Its throttle is what it is asked, clipped, zero below `dead_band`, followed at most at `rate_limit` [full throttle
-    per second] with a first-order lag of time constant `lag`; what is left out is ideal.
+    Its throttle is what it is asked, clipped, zero below `dead_band`, followed at most at `rate_limit` with a
+    first-order lag of time constant `lag`; what is left out is ideal.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    position : tuple of float
+        Where it acts, from the origin of the body axes, body axes [m].
+    direction : tuple of float
+        Unit vector of positive thrust, body axes [-].
+    nominal_thrust : float
+        T_nom at full throttle, at rest, at sea level [N].
+    reversible : bool
+        Whether its throttle goes down to −1, else to 0.
+    speed_of_no_thrust : float, optional
+        Axial airspeed at which its thrust has vanished [m/s].
+    lag : float, optional
+        τ [s].
+    rate_limit : float, optional
+        Fastest change of the throttle, full throttle per second [1/s].
+    dead_band : float, optional
+        Throttle below which nothing is done [-].
     """
 
     name: Part

@@ -16,6 +16,9 @@ from tethership.scenario.wind_record import read_record
 def expand_wind_file(document: Document, base: Path | None, origin: str) -> None:
     """Replace `wind.file` of a scenario's document by the samples in it and their mean, in place.
 
+    They become `times` [s], shape (n,), `velocities` north, east, down [m/s], shape (n, 3), and of the level mean over
+    time `speed` [m/s] and `from_direction`, clockwise from north [rad]; `height` [m] too where it is known.
+
     Parameters
     ----------
     document : dict
@@ -65,7 +68,7 @@ def take_wind_file(document: Document, changes: Document) -> Document:
     document : dict
         Of a scenario, changed in place: with a file, counted from here, its wind becomes the measured one.
     changes : dict
-        Dotted name → value.
+        Dotted name → value; a plain number for `wind.height` is in [m].
     """
     taken = set()
     if "wind.file" in changes:

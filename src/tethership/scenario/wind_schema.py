@@ -9,7 +9,7 @@ from tethership.scenario.quantity import Angle, Metres, Quantity, Seconds, Speed
 
 
 class UniformWindConfig(Table):
-    """The same wind everywhere; `from_direction` is where it comes from, clockwise from north."""
+    """The same wind everywhere; `from_direction` [rad] is where it comes from, clockwise from north, `speed` [m/s]."""
 
     model: Literal["uniform"] = "uniform"
     speed: Speed
@@ -17,7 +17,21 @@ class UniformWindConfig(Table):
 
 
 class PowerLawWindConfig(Table):
-    """Wind growing with height; `speed` is that at `reference_height`."""
+    """Wind growing with height, V(h) = V_ref (h/h_ref)^α.
+
+    Attributes
+    ----------
+    speed : float
+        V_ref, at `reference_height` [m/s].
+    from_direction : float
+        Where it comes from, clockwise from north [rad].
+    reference_height : float
+        h_ref above ground [m].
+    exponent : float
+        α [-].
+    lowest_height : float
+        Height above ground below which the profile is constant [m].
+    """
 
     model: Literal["power_law"]
     speed: Speed
@@ -28,7 +42,11 @@ class PowerLawWindConfig(Table):
 
 
 class LogarithmicWindConfig(Table):
-    """Wind of the neutral surface layer; `speed` is that at `reference_height`, `roughness` the length z₀."""
+    """Wind of the neutral surface layer, V(h) = V_ref ln(h/z₀)/ln(h_ref/z₀).
+
+    `speed` is V_ref [m/s], at `reference_height` h_ref above ground [m], `roughness` the length z₀ [m];
+    `from_direction` is where it comes from, clockwise from north [rad].
+    """
 
     model: Literal["logarithmic"]
     speed: Speed
@@ -48,9 +66,9 @@ class LogarithmicWindConfig(Table):
 class MeasuredWindConfig(Table):
     """A measured history, the same everywhere; in a file it is given as `file`, a CSV or netCDF.
 
-    `times` and `velocities` (north, east, down) are what was read; `speed` and `from_direction` are those of its mean
-    over time and are not to be given by hand. `height` stands beside `file` where that has several heights; `remarks`
-    are what reading it left out, bridged or guessed.
+    `times` [s], shape (n,), and `velocities` of the air (north, east, down) [m/s], shape (n, 3), are what was read;
+    `speed` [m/s] and `from_direction` [rad] are those of its mean over time and are not to be given by hand. `height`
+    [m] stands beside `file` where that has several heights; `remarks` are what reading it left out, bridged or guessed.
     """
 
     model: Literal["measured"]
@@ -92,10 +110,12 @@ WindConfig = Annotated[AnyWindConfig, Field(discriminator="model")]
 
 
 class GustConfig(Table):
-    """A gust whose peak is a `fraction` of the wind, or a `speed`.
+    """A gust whose peak is a `fraction` of the mean wind's speed [-], or a `speed` [m/s].
 
-    `shape` is one pulse ½A(1 − cos), those pulses `repeated` to the end, or one period of a bare `cosine`, which
-    begins and ends with a jump. One pulse may `turn` about the vertical while it lasts, clockwise seen from above.
+    It comes from `from_direction`, clockwise from north, rises at `upward_angle` [rad], begins at `start` and lasts
+    `period` [s]. `shape` is one pulse ½A(1 − cos), those pulses `repeated` to the end, or one period of a bare
+    `cosine`, which begins and ends with a jump. One pulse may `turn` about the vertical while it lasts, clockwise seen
+    from above [rad].
     """
 
     fraction: Annotated[float, Quantity("1", low=0.0)] | None = None
@@ -123,9 +143,10 @@ class GustConfig(Table):
 class TurbulenceConfig(Table):
     """Continuous turbulence about the mean wind, as a record made from `seed`.
 
-    Scales and intensities are those of MIL-F-8785C below 1000 ft at `height`, the intensities times `intensity`;
-    `lengths` and `deviations` (along the wind, across, vertical) replace them. `averaged` takes the mean over the
-    hull's length, with `gradients` the hull feels the difference from nose to tail too.
+    Scales and intensities are those of MIL-F-8785C below 1000 ft at `height` above ground [m], the intensities times
+    `intensity` [-]; `lengths` L [m] and `deviations` σ [m/s] (along the wind, across, vertical) replace them.
+    `averaged` takes the mean over the hull's length, with `gradients` the hull feels the difference from nose to tail
+    too.
     """
 
     spectrum: Literal["dryden", "von_karman"] = "dryden"

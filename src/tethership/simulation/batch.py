@@ -77,11 +77,11 @@ class Lane(NamedTuple):
     Attributes
     ----------
     vector : Float[Array, "n"]
-        Integrator's vector.
+        Integrator's vector of all states, in the order of `plant.layout.closed_loop`, SI and radians.
     slope : Float[Array, "n"]
-        Its rate.
+        Its rate, per second.
     margins : Float[Array, "4"]
-        In the order of `events.MARGINS`.
+        In the order of `events.MARGINS` [m, -, m, rad].
     tally : Tally
         Sums.
     active : Bool[Array, ""]
@@ -104,7 +104,7 @@ class BatchResult(NamedTuple):
     Attributes
     ----------
     tally : Tally
-        Sums at the end of each.
+        Sums at the end of each: times [s], tensions [N], angles [rad] and the others in the units of `Tally`.
     outcome : Int[Array, "flights"]
         Place in `CODES`.
     """

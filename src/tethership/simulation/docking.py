@@ -32,7 +32,7 @@ def dock(
     throw: bool = False,
     own_laws: Mapping[str, AbstractLaw] | None = None,
 ) -> Flight:
-    """Fly the docking manoeuvre: the winches take in cable until its length is `stop.cable_length`.
+    """Fly the docking manoeuvre: the winches take in cable until its unstretched length is `stop.cable_length` [m].
 
     Parameters
     ----------

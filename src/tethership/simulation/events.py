@@ -50,7 +50,16 @@ class Stop:
 
     @classmethod
     def of(cls, scenario: Scenario, stop: "Stop | float | None") -> "Stop":
-        """Return what ends a flight of a scenario: as given, after so many seconds, or at the scenario's time limit."""
+        """Return what ends a flight of a scenario.
+
+        Parameters
+        ----------
+        scenario : Scenario
+            Gives the largest |θ| [rad], and the time limit [s] where none is given; touching the ground ends a flight
+            where the scenario has `ground.anchor_height`.
+        stop : Stop or float, optional
+            Taken as it is, or the time limit [s].
+        """
         if isinstance(stop, Stop):
             return stop
         own = scenario.config.stop
@@ -59,11 +68,11 @@ class Stop:
 
     @classmethod
     def docking(cls, scenario: Scenario) -> "Stop":
-        """Return what ends the docking manoeuvre of a scenario."""
+        """Return what ends the docking of a scenario: as `of`, and its docking length `stop.cable_length` [m]."""
         return dataclasses.replace(cls.of(scenario, None), cable_length=scenario.config.stop.cable_length)
 
     def conditions(self) -> "StopConditions":
-        """Return the same as the compiled program sees it."""
+        """Return length [m] and largest pitch [rad] as the compiled program sees them; −inf where it is not to dock."""
         docked = -math.inf if self.cable_length is None else self.cable_length
         return StopConditions(jnp.asarray(docked), jnp.asarray(self.largest_pitch), self.ground_contact)
 
@@ -86,11 +95,21 @@ class StopConditions(eqx.Module):
     ground_contact: bool = eqx.field(static=True)
 
     def margins(self, loop: ClosedLoop, time: Float[Array, ""], vector: Float[Array, "n"]) -> Float[Array, "4"]:
-        """Return the margins in the order of `MARGINS` [-], +inf for what cannot happen.
+        """Return the margins in the order of `MARGINS` [m, -, m, rad], +inf for what cannot happen.
+
+        Parameters
+        ----------
+        loop : ClosedLoop
+            Gives cables, ground and hull.
+        time : Float[Array, ""]
+            t [s].
+        vector : Float[Array, "n"]
+            All states.
 
         Notes
         -----
-        Length left over the docking length, 1 − T/F_b at the worse end, clearance [m], |θ|_max − |θ| [rad].
+        Longest L_t less the docking length [m], least 1 − T/F_b [-] with T the larger of a cable's end tensions,
+        clearance of the hull's lowest point [m], |θ|_max − |θ| [rad].
         """
         now = loop.unpack(vector)
         state, lengths = now.ship, now.lengths
@@ -111,6 +130,9 @@ class StopConditions(eqx.Module):
         return jnp.stack([docked, broken, contact, pitch])
 
     def least(self, loop: ClosedLoop, time: Float[Array, ""], vector: Float[Array, "n"]) -> Float[Array, ""]:
-        """Return the least margin; 1 where it is not finite, so that divergence is left to be found as such."""
+        """Return the least of the margins [m, -, m, rad], each in its own unit; arguments as in `margins`.
+
+        Where it is not finite 1 is returned, so that divergence is left to be found as such.
+        """
         margin = jnp.min(self.margins(loop, time, vector))
         return jnp.where(jnp.isfinite(margin), margin, 1.0)

@@ -47,7 +47,10 @@ class Flight:
 
     @property
     def metrics(self) -> dict[str, Any]:
-        """Metrics of Tables 3–6, SI, θ_rms in degrees."""
+        """Metrics of Tables 3–6 by the names of `results.docking_metrics`.
+
+        Tensions [N], times [s], rewind rate [m/s], clearances [m], ADC [1/s], E [-]; θ_rms in degrees [°].
+        """
         return self._metrics
 
     @functools.cached_property

@@ -15,7 +15,11 @@ Number = Annotated[float, Field(allow_inf_nan=False)]
 
 
 class StoredTrim(BaseModel):
-    """A trimmed point as plain numbers: state s (12,), throttles δ and deflections, SI."""
+    """A trimmed point as plain numbers.
+
+    They are the state [m/s, rad/s, rad, m], shape (12,), in the order of `plant.state.STATE_NAMES`, the throttles δ [-]
+    and the deflections [rad].
+    """
 
     model_config = ConfigDict(strict=True)
 
@@ -25,7 +29,10 @@ class StoredTrim(BaseModel):
 
 
 class StoredStop(BaseModel):
-    """What was to end a flight, as `simulation.events.Stop` has it, and whether the winches took in cable."""
+    """What was to end a flight, as `simulation.events.Stop` has it, and whether the winches took in cable.
+
+    `time_limit` [s], `cable_length` [m] or none, `largest_pitch` [rad].
+    """
 
     model_config = ConfigDict(strict=True)
 
@@ -39,7 +46,8 @@ class StoredStop(BaseModel):
 class FlightHeader(BaseModel):
     """Attributes of a flight; their meanings are in `results.schema.ATTRIBUTES`.
 
-    The scenario and the solver are validated as their own files are when they are used.
+    `limits` are the four tensions [N] that are watched: control threshold, envelope's tear and tensile force, weakest
+    cable. The scenario and the solver are validated as their own files are when they are used.
     """
 
     model_config = ConfigDict(strict=True)
@@ -81,7 +89,13 @@ def check_header(attributes: dict[str, Any], origin: str) -> None:
 
 
 def stored_solver(numbers: dict[str, Any], origin: str) -> SolverConfig:
-    """Return solver settings that a flight keeps as plain SI numbers; raises ConfigError where they cannot be."""
+    """Return solver settings that a flight keeps as plain numbers: steps and output interval [s], the rest as it is.
+
+    Raises
+    ------
+    ConfigError
+        They cannot be.
+    """
     fields = SolverConfig.model_fields
     in_si = {
         key: {"value": value, "unit": SI_UNIT}

@@ -98,7 +98,7 @@ class Stepping(eqx.Module):
 
     @classmethod
     def from_config(cls, config: SolverConfig) -> "Stepping":
-        """Return the settings of a validated solver file."""
+        """Return the settings of a validated solver file: steps and output interval [s], tolerances as it has them."""
         return cls(
             jnp.array([config.relative_tolerance, config.absolute_tolerance]),
             jnp.asarray(config.largest_step),
@@ -131,6 +131,17 @@ Field = Callable[[Float[Array, ""], Float[Array, "n"]], Array]
 
 def least_traced(loop: ClosedLoop, stop: StopConditions, time: Array, vector: Array) -> tuple[Field, Field]:
     """Return vector field and least margin, traced once (the integrator would trace them at every use).
+
+    Parameters
+    ----------
+    loop : ClosedLoop
+        Its `vector_field` is the first function: all states per second.
+    stop : StopConditions
+        Its `least` margin [m, -, m, rad] is the second.
+    time : Float[Array, ""]
+        A time [s] to trace with.
+    vector : Float[Array, "n"]
+        All states there.
 
     Notes
     -----
@@ -186,7 +197,21 @@ def solved(
     vector: Float[Array, "n"],
     end: Float[Array, ""],
 ) -> Solution:
-    """Integrate from one time to another, or until the margin vanishes or the budget of one call is spent."""
+    """Integrate from one time to another, or until the margin vanishes or the budget of one call is spent.
+
+    Parameters
+    ----------
+    field, margin : callable
+        From `least_traced`.
+    stepping : Stepping
+        Solver settings; with fixed steps all have `largest_step` [s].
+    corners : Float[Array, "n"]
+        Times at which a gust begins or ends [s]: adaptive steps end there.
+    start, end : Float[Array, ""]
+        Times [s].
+    vector : Float[Array, "n"]
+        All states at the start, SI and radians.
+    """
     solution = diffrax.diffeqsolve(
         diffrax.ODETerm(lambda t, y, _: field(jnp.asarray(t), y)),
         METHODS[stepping.method](),

@@ -57,7 +57,10 @@ def tension_pace(flight: Recorded) -> NDArray[np.float64]:
 
 
 def outside(flight: Recorded) -> NDArray[np.bool_]:
-    """Return at which of the flight's instants a cable is outside the trusted range, shape (time,)."""
+    """Return at which of the flight's instants a cable is outside the trusted range, shape (time,).
+
+    It is so where κ [-] of any cable is above `TRUSTED`, and for `MEMORY` [s] from there on.
+    """
     pace, time = tension_pace(flight), flight.data["time"].to_numpy()
     hurried = np.where(np.any(pace > TRUSTED, axis=1), time, -np.inf)
     return time - np.maximum.accumulate(hurried) <= MEMORY
@@ -86,7 +89,10 @@ def largest_impulse(flight: Recorded) -> tuple[float, float]:
 
 
 def quasi_static_warning(flight: Recorded) -> str | None:
-    """Return one line where a flight leaves the range in which the quasi-static cable may be trusted, else None."""
+    """Return one line where a flight leaves the range in which the quasi-static cable may be trusted, else None.
+
+    It is told from a share of `TOLD` [-] of its samples on, with the largest tension of an axial wave [N].
+    """
     share = share_outside(flight)
     if share < TOLD:
         return None

@@ -27,7 +27,7 @@ class Flown:
     Attributes
     ----------
     arrays : dict
-        Outputs by name, first axis time, `time` included.
+        Outputs by the names and in the units of `results.schema`, first axis time, `time` [s] included.
     outcome : Outcome
     steps : int
         Steps of the integrator.

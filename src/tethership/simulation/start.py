@@ -28,12 +28,12 @@ class Start(Protocol):
 
     @property
     def state(self) -> State:
-        """State of the ship at trim."""
+        """State of the ship at trim: velocity and ω, body axes [m/s, rad/s], φ, θ, ψ [rad], x_P, ground axes [m]."""
         ...
 
     @property
     def command(self) -> Command:
-        """Trimmed throttles and deflections."""
+        """Trimmed throttles δ [-] and deflections [rad]."""
         ...
 
 
@@ -43,15 +43,21 @@ def start_state(scenario: Scenario, trimmed: State) -> State:
     Parameters
     ----------
     scenario : Scenario
-        Says by how much (`start.attitude_offset`) and which point stays in place (`start.hold`).
+        Says by how much (`start.attitude_offset`, added to φ, θ, ψ [rad]) and which point stays in place
+        (`start.hold`).
     trimmed : State
-        State at trim.
+        State at trim [m/s, rad/s, rad, m].
+
+    Notes
+    -----
+    With q the point held, body axes [m], and R₀, R₁ the rotations before and after: x_P moves by (R₀ − R₁) q. Velocity
+    and rates keep their *body* components, but for the velocity V_A of an anchor under way: (R₁ − R₀)ᵀ V_A is added.
     """
     return _moved(scenario.config.start.as_arrays(), scenario.system.with_a_gust(), trimmed)
 
 
 def moved_start(start: StartConfig, plant: TetheredAirship, trimmed: State) -> State:
-    """Return `start_state` of a scenario's table and its plant; can be traced."""
+    """Return `start_state` of a scenario's table and its plant [m/s, rad/s, rad, m]; can be traced."""
     held = plant.cables[0].tether_point if start.hold == "tether_point" and plant.cables else jnp.zeros(3)
     attitude = trimmed.attitude + jnp.asarray(start.attitude_offset)
     before, after = rotation_matrix(trimmed.attitude), rotation_matrix(attitude)
@@ -67,7 +73,7 @@ _moved = eqx.filter_jit(moved_start)
 
 @eqx.filter_jit
 def begin(loop: ClosedLoop, stop: StopConditions, state: State) -> tuple[Array, Array]:
-    """Return the integrator's vector at the start, and the margins there."""
+    """Return the integrator's vector at the start, t = 0, shape (n,), and the margins there [m, -, m, rad]."""
     vector = loop.initial(state)
     return vector, stop.margins(loop, jnp.zeros(()), vector)
 
@@ -89,7 +95,10 @@ def _part_rates(plant: TetheredAirship, state: State) -> Array:
 
 
 def check_parts(scenario: Scenario, point: Start) -> None:
-    """Raise ConfigError where a part of one's own does not rest where it says so."""
+    """Raise ConfigError where a part of one's own does not rest where it says so.
+
+    At rest each state changes by no more than `STILL` [their unit per second], in the mean air at t = 0 [s].
+    """
     if not scenario.system.parts:
         return
     rates = np.asarray(_part_rates(scenario.system, point.state))
@@ -103,6 +112,9 @@ def check_parts(scenario: Scenario, point: Start) -> None:
 
 def check_point(scenario: Scenario, point: Start) -> None:
     """Raise ConfigError where a point is no equilibrium of the scenario: trimmed for another one, say.
+
+    Looked at are what is left of force and moment about P, body axes [N, N m], and the rates of what must stand still
+    [rad/s, m/s].
 
     Notes
     -----
@@ -123,7 +135,7 @@ def check_point(scenario: Scenario, point: Start) -> None:
 
 
 def check_start(margins: Float[Array, "4"]) -> None:
-    """Raise ConfigError where the flight would be over before it begins."""
+    """Raise ConfigError where the flight would be over before it begins, by its margins at t = 0 [m, -, m, rad]."""
     docked, broken, contact, pitch = np.asarray(margins)
     if broken <= 0:
         raise ConfigError(
@@ -142,7 +154,10 @@ def check_start(margins: Float[Array, "4"]) -> None:
 
 
 def point_numbers(point: Start) -> dict[str, Any]:
-    """Return a trimmed point as plain numbers, which JSON keeps bit for bit."""
+    """Return a trimmed point as plain numbers, which JSON keeps bit for bit.
+
+    They are `state` [m/s, rad/s, rad, m], in the order of `STATE_NAMES`, `throttle` [-] and `deflection` [rad].
+    """
     return {
         "state": np.asarray(point.state.as_vector()).tolist(),
         "throttle": np.asarray(point.command.throttle).tolist(),
@@ -151,7 +166,7 @@ def point_numbers(point: Start) -> dict[str, Any]:
 
 
 class StoredStart:
-    """A trimmed point read from a flight file."""
+    """A trimmed point read from a flight file: numbers of `point_numbers` [m/s, rad/s, rad, m], [-] and [rad]."""
 
     def __init__(self, numbers: dict[str, Any]) -> None:
         self.state = State.from_vector(jnp.asarray(numbers["state"]))

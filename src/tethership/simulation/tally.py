@@ -68,7 +68,10 @@ class Signals(NamedTuple):
 
 
 def signals(loop: ClosedLoop, now: Instant) -> Signals:
-    """Return the signals at an instant; a ship without cables has no tension."""
+    """Return the signals at an instant.
+
+    A ship without cables has tensions of 0 [N], a rewind rate of 0 [m/s] and a misalignment of 0 [rad].
+    """
     cables, zero, none = now.cables, jnp.zeros(()), jnp.zeros(0)
     ends = jnp.stack([safe_norm(c.ship) for c in cables]) if cables else none
     mass = jnp.stack([jnp.maximum(c.load.linear_density, LEAST_MASS) for c in loop.plant.cables]) if cables else none

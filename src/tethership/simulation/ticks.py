@@ -124,7 +124,25 @@ def _fly(
 def fly_ticks(
     loop: ClosedLoop, stop: StopConditions, stepping: Stepping, vector: Float[Array, "n"], intervals: Ticks
 ) -> Segment:
-    """Fly from tick to tick, or until a stop condition; arguments as in `integrate.fly_segment`."""
+    """Fly from tick to tick, or until a stop condition; other arguments as in `integrate.fly_segment`.
+
+    Parameters
+    ----------
+    loop : ClosedLoop
+        With a sampled law.
+    stop, stepping
+        What ends the flight, and how it is integrated.
+    vector : Float[Array, "n"]
+        All states at the first interval's start, before the law looks or acts there.
+    intervals : Ticks
+        From `ticks`, starts and ends [s].
+
+    Returns
+    -------
+    Segment
+        Time reached [s] and the vector there; samples at whole multiples of the output interval [s]. One that stops
+        before its interval's end without a stop condition (steps used up) is told as not finite.
+    """
     start, end, looks, acts = intervals[:4]
     edges = jnp.asarray(start), jnp.asarray(end), jnp.asarray(looks), jnp.asarray(acts)
     found = jax.device_get(_fly(loop, stop, stepping, vector, edges, intervals.samples))

@@ -66,7 +66,10 @@ def seconds_passed(flight: Flown) -> dict[str, float]:
 
 
 def reservations(flight: Flown) -> list[str]:
-    """Return what a bare outcome would hide, a clause each: limits passed, hull below the ground, saturation."""
+    """Return what a bare outcome would hide, a clause each: limits passed, hull below the ground, saturation.
+
+    The hull is told from `DIP` [m] below the ground on, saturation from a share of `SATURATED` [-] of the time on.
+    """
     found = [
         f"{WORDS[name]} was passed for {over:.2f} s"
         for name, over in seconds_passed(flight).items()
@@ -96,7 +99,10 @@ def verdict(flight: Flown, digits: int = 1) -> str:
 
 
 def warnings(flight: Flown) -> list[str]:
-    """Return what must be known besides the verdict: the record of the wind, cable below the ground, model ranges."""
+    """Return what must be known besides the verdict: the record of the wind, cable below the ground, model ranges.
+
+    A cable is told from `DIP` [m] below the ground on.
+    """
     time = flight.data["time"].to_numpy()
     dips = flight.data["cable_clearance"].to_numpy() if "cable_clearance" in flight.data else np.zeros(0)
     said = [quasi_static_warning(flight), record_warning(flight.config.wind, float(time[-1]) if len(time) else 0.0)]

@@ -25,7 +25,7 @@ OF_SHIP = ("airspeed", "angle_of_attack", "sideslip", "rate_of_climb", "clearanc
 OF_SHIP_UNITS = ("m/s", "rad", "rad", "m/s", "m")
 """Their SI units."""
 
-OWN_UNIT = "own"
+OWN_UNIT = "its own unit"
 """Unit of what a part of one's own reads: its own."""
 
 STILL = 1e-2

@@ -100,7 +100,7 @@ def _matrices(
     question: Question,
     numbers: Float[Array, "points leaves"],
     values: Float[Array, "points unknowns"],
-) -> Float[Array, "points 12 12"]:
+) -> Float[Array, "points states states"]:
     """Return A at many numbers and unknowns."""
     return jax.vmap(lambda own, unknowns: _matrix(config, places, question, own, unknowns)[0])(numbers, values)
 
@@ -111,7 +111,7 @@ def _matrix(
     question: Question,
     numbers: Float[Array, "leaves"],
     unknowns: Float[Array, "unknowns"],
-) -> tuple[Float[Array, "12 12"], Problem]:
+) -> tuple[Float[Array, "states states"], Problem]:
     """Return A at numbers of the scenario and unknowns of its trim, and the trim's problem there."""
     here = with_values(config, places, numbers)
     problem = pose(here, build_system(here), question)
@@ -153,7 +153,7 @@ def _retrimmed(
     current: Float[Array, "leaves"],
     values: Float[Array, "unknowns"],
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return dA/dp (12, 12, leaves) along the trims.
+    """Return dA/dp (states, states, leaves) along the trims.
 
     Then what is left of the balance's derivative after retrimming (6, leaves), that derivative itself, and the slopes
     of the unknowns (unknowns, leaves).

@@ -22,7 +22,7 @@ class ElasticCatenary(AbstractTensionLaw):
     stiffness: Float[Array, ""]
 
     def force(self, span: Float[Array, "3"], length: Float[Array, ""], load: Float[Array, "3"]) -> CableForce:
-        """Return the forces at both ends; arguments as in `AbstractTensionLaw.force`."""
+        """Return the forces at both ends [N], ground axes; arguments as in `AbstractTensionLaw.force`."""
         return end_forces(span, length, regularised(load), 1.0 / self.stiffness)
 
     def shape(
@@ -32,7 +32,7 @@ class ElasticCatenary(AbstractTensionLaw):
         load: Float[Array, "3"],
         arc: Float[Array, "n"],
     ) -> Float[Array, "n 3"]:
-        """Return points of the cable; arguments as in `AbstractTensionLaw.shape`."""
+        """Return points of the cable from the anchor, ground axes [m]; arguments as in `AbstractTensionLaw.shape`."""
         anchor = self.force(span, length, load).anchor
         return points(anchor, regularised(load), 1.0 / self.stiffness, arc)
 

@@ -50,7 +50,7 @@ class PublishedTension(AbstractTensionLaw):
         return elongation, outward, span * scale
 
     def force(self, span: Float[Array, "3"], length: Float[Array, ""], load: Float[Array, "3"]) -> CableForce:
-        """Return the forces at both ends; arguments as in `AbstractTensionLaw.force`."""
+        """Return the forces at both ends [N], ground axes; arguments as in `AbstractTensionLaw.force`."""
         elongation, outward, sagging = self._sagging_span(span, length)
         slack = end_forces(sagging, length, regularised(load), jnp.zeros_like(length))
         width = self.joint_end - self.joint_start
@@ -68,7 +68,7 @@ class PublishedTension(AbstractTensionLaw):
         load: Float[Array, "3"],
         arc: Float[Array, "n"],
     ) -> Float[Array, "n 3"]:
-        """Return points of the cable; arguments as in `AbstractTensionLaw.shape`.
+        """Return points of the cable from the anchor, ground axes [m]; arguments as in `AbstractTensionLaw.shape`.
 
         Notes
         -----

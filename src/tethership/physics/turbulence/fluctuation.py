@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 
 
 class AbstractFluctuation(eqx.Module):
-    """A velocity added to the mean wind."""
+    """A velocity added to the mean wind, ground axes [m/s], and the air's apparent rotation along the hull [rad/s]."""
 
     @abc.abstractmethod
     def velocity(self, time: Float[Array, ""]) -> Float[Array, "3"]:

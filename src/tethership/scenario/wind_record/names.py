@@ -129,7 +129,9 @@ def measures(column: Column, role: str) -> bool:
 
 
 def factor_to_si(column: Column, role: str, path: Path) -> float:
-    """Return the factor by which a column's numbers become s, m/s, rad or m.
+    """Return the factor by which a column's numbers are multiplied to be in SI [s, m/s, rad or m].
+
+    A column that says no unit has that of `DEFAULTS`; `role` is its quantity, a key of `NAMES`.
 
     Raises
     ------
@@ -145,5 +147,5 @@ def factor_to_si(column: Column, role: str, path: Path) -> float:
 
 
 def to_si(column: Column, role: str, path: Path) -> np.ndarray:
-    """Return the numbers of a column that holds numbers, in SI; errors as `factor_to_si`."""
+    """Return the numbers of a column that holds numbers, in SI [s, m/s, rad or m]; errors as `factor_to_si`."""
     return np.asarray(column.values, float) * factor_to_si(column, role, path)

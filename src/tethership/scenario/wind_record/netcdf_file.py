@@ -19,7 +19,8 @@ ENGINES = {b"\x89HDF": "h5netcdf", b"CDF\x01": "scipy", b"CDF\x02": "scipy"}
 def read_netcdf(path: Path) -> list[Column]:
     """Return the variables of a netCDF file that are known, and the names alone of those that are not.
 
-    Packed numbers are unpacked and `_FillValue` and `missing_value` become NaN; times stay numbers.
+    Packed numbers are unpacked and `_FillValue` and `missing_value` become NaN; times stay numbers. Values are in the
+    file's own units, the heights of columns in [m].
 
     Raises
     ------

@@ -28,7 +28,16 @@ GUSTLESS = 60.0
 
 
 def read_numbers(column: Column, role: str, path: Path) -> np.ndarray:
-    """Return a column in SI, NaN where nothing was measured.
+    """Return a column of speeds [m/s] or directions [rad], shape (n,), NaN where nothing was measured.
+
+    Parameters
+    ----------
+    column : Column
+        In its own unit.
+    role : str
+        Its quantity, a key of `names.NAMES`.
+    path : Path
+        For messages.
 
     Notes
     -----

@@ -39,17 +39,17 @@ SLOW = 0.02
 """Rate below which a mode is called slow or mild [1/s]: half a minute and more to half or double."""
 
 LITERATURE_FINS = 6.6
-"""S C_Nα η_f per fin of `lotte.toml` [m²]."""
+"""S C_Nα η_f per fin of `lotte.toml` [m²/rad]."""
 
 FINS = (5.0, LITERATURE_FINS, 8.0, 10.0, 12.0)
-"""Range of S C_Nα η_f per fin over which the claims are looked at [m²]."""
+"""Range of S C_Nα η_f per fin over which the claims are looked at [m²/rad]."""
 
 LIFT_PER_EFFICIENCY = 2.88 * 5.73
-"""S C_Nα of `lotte.toml` [m²]."""
+"""S C_Nα of `lotte.toml` [m²/rad]."""
 
 
 def fins(lift_area: float) -> dict[str, float]:
-    """Return the change that gives every fin S C_Nα η_f [m²]."""
+    """Return the change that gives every fin S C_Nα η_f [m²/rad], by its efficiency η_f [-]."""
     names = ("fin_starboard", "fin_bottom", "fin_port", "fin_top")
     return {f"vehicle.fins.{name}.efficiency": lift_area / LIFT_PER_EFFICIENCY for name in names}
 
@@ -317,7 +317,7 @@ def check_claims(
     formulation : str
         consistent or published.
     lift_area : float
-        S C_Nα η_f of each fin [m²].
+        S C_Nα η_f of each fin [m²/rad].
     names : iterable of str, optional
         Only these.
     """
