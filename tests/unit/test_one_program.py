@@ -35,6 +35,7 @@ def test_layers_sas_and_gusts_are_switches():
     turned = with_gust.changed({"gusts.0.turn": 1.0, "gusts.0.start": 3.0})
     points = [ts.trim(scenario) for scenario in (with_gust, without, turned)]
     ts.fly(with_gust, points[0], stop=1.0, layers=())
+    CosineGust.silent()  # its arrays are placed by programs of a line, not by that of a flight
     sets = [(with_gust, points[0], ("rewind", "heading"), True), (turned, points[2], ("navigation",), False)]
     sets += [(without, points[1], (), False), (without, points[1], ("rewind", "heading", "navigation"), True)]
     with counted() as more:

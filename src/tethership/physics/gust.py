@@ -12,7 +12,6 @@ import abc
 
 import equinox as eqx
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Float
 
 NEVER = 1e9
@@ -54,8 +53,7 @@ class CosineGust(AbstractGust):
     @classmethod
     def silent(cls) -> "CosineGust":
         """Return a gust that adds 0 [m/s] and begins at `NEVER` [s], after every flight: a switch that is off."""
-        zero, one, never = (jnp.asarray(np.float64(value)) for value in (0.0, 1.0, NEVER))
-        return cls(jnp.asarray(np.zeros(3)), never, one, zero)
+        return cls(jnp.zeros(3), jnp.full((), NEVER, dtype=float), jnp.ones(()), jnp.zeros(()))
 
     def velocity(self, time: Float[Array, ""]) -> Float[Array, "3"]:
         """Return the velocity added to the wind [m/s], ground axes, at time t [s]; C¹ in t."""
