@@ -25,166 +25,39 @@ callbacks, which would keep programs out of that cache. What is not finite is fo
 as an outcome.
 """
 
-import importlib
-from typing import TYPE_CHECKING, Any
+import pkgutil
+from typing import Any
 
 import tethership._interrupt  # noqa: F401 (acts on being imported, before what takes long)
 
 # isort: split
 
 import jax
+import lazy_loader
 
 from tethership._cache import checks_without_callbacks, use_compilation_cache
 from tethership._studies import studied
-from tethership._version import __version__
-from tethership.errors import ConfigError, SolveError, TethershipError, TethershipWarning
 
 jax.config.update("jax_enable_x64", True)
 use_compilation_cache()
 checks_without_callbacks()
 
-if TYPE_CHECKING:
-    from tethership.analysis import (
-        LinearModel,
-        Modes,
-        Sensitivities,
-        Sweep,
-        TrimOutcome,
-        TrimPoint,
-        linearize,
-        sensitivities,
-        sweep,
-        trim,
-    )
-    from tethership.campaign import Campaign, open_results, run_campaign
-    from tethership.control import AbstractLaw, Correction, Measurement, Request
-    from tethership.plant import AbstractPart
-    from tethership.scenario import Scenario, list_packaged, list_parameters, load_scenario, scenario_at
-    from tethership.simulation import Flight, Outcome, Stop, dock, fly, fly_again
-    from tethership.spatial import Wrench
-    from tethership.view import (
-        interactive_root_locus,
-        plot_campaign,
-        plot_docking,
-        plot_loads,
-        plot_modes,
-        plot_root_locus,
-        write_replay,
-    )
-
-_HOMES = {
-    "AbstractLaw": "control",
-    "AbstractPart": "plant",
-    "Campaign": "campaign",
-    "Correction": "control",
-    "Flight": "simulation",
-    "LinearModel": "analysis",
-    "Measurement": "control",
-    "Modes": "analysis",
-    "Outcome": "simulation",
-    "Request": "control",
-    "Scenario": "scenario",
-    "Stop": "simulation",
-    "Sensitivities": "analysis",
-    "Sweep": "analysis",
-    "TrimOutcome": "analysis",
-    "TrimPoint": "analysis",
-    "Wrench": "spatial",
-    "dock": "simulation",
-    "fly": "simulation",
-    "fly_again": "simulation",
-    "interactive_root_locus": "view",
-    "linearize": "analysis",
-    "list_packaged": "scenario",
-    "list_parameters": "scenario",
-    "load_scenario": "scenario",
-    "open_results": "campaign",
-    "plot_campaign": "view",
-    "plot_docking": "view",
-    "plot_loads": "view",
-    "plot_modes": "view",
-    "plot_root_locus": "view",
-    "run_campaign": "campaign",
-    "scenario_at": "scenario",
-    "sensitivities": "analysis",
-    "sweep": "analysis",
-    "trim": "analysis",
-    "write_replay": "view",
-}
-
 _OFFERED = ("check_claims", "linear_figure", "plot_linear_figure")
 """Of the paper's study, which reaches the library by an entry point."""
 
-_PARTS = (
-    "analysis",
-    "campaign",
-    "control",
-    "explorer",
-    "physics",
-    "results",
-    "scenario",
-    "simulation",
-    "spatial",
-    "studies",
-    "tuning",
-    "plant",
-    "view",
-)
+_ours, _, _names = lazy_loader.attach_stub(__name__, __file__)
 
-__all__ = [
-    "AbstractLaw",
-    "AbstractPart",
-    "Campaign",
-    "ConfigError",
-    "Correction",
-    "Flight",
-    "LinearModel",
-    "Measurement",
-    "Modes",
-    "Outcome",
-    "Request",
-    "Scenario",
-    "Sensitivities",
-    "SolveError",
-    "Stop",
-    "Sweep",
-    "TethershipError",
-    "TethershipWarning",
-    "TrimOutcome",
-    "TrimPoint",
-    "Wrench",
-    "__version__",
-    "dock",
-    "fly",
-    "fly_again",
-    "interactive_root_locus",
-    "linearize",
-    "list_packaged",
-    "list_parameters",
-    "load_scenario",
-    "open_results",
-    "plot_campaign",
-    "plot_docking",
-    "plot_loads",
-    "plot_modes",
-    "plot_root_locus",
-    "run_campaign",
-    "scenario_at",
-    "sensitivities",
-    "sweep",
-    "trim",
-    "write_replay",
-]
+__all__ = sorted(  # pyright: ignore[reportUnsupportedDunderAll]
+    set(_names) - {module.name for module in pkgutil.iter_modules(__path__)}
+)
 
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used: the command line then starts without what it does not need."""
-    if name in _HOMES:
-        return getattr(importlib.import_module(f"tethership.{_HOMES[name]}"), name)
-    if name in _PARTS:
-        return importlib.import_module(f"tethership.{name}")
     if name in _OFFERED:
         return studied(name)
+    if name in _names:
+        return _ours(name)
     raise AttributeError(f"module 'tethership' has no attribute {name!r}")
 
 

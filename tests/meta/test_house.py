@@ -3,6 +3,7 @@
 If one of these failed, a stranger could not say from one file which unit and which axes, or the README would lie.
 """
 
+import ast
 import importlib
 import inspect
 import pkgutil
@@ -22,6 +23,7 @@ from tethership.results import VARIABLES
 from tethership.scenario.load import list_packaged, packaged_text
 
 ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "src" / "tethership"
 
 
 def modules(package):
@@ -187,3 +189,38 @@ def test_starting_does_not_import_plotting():
     code = "import sys, tethership.cli; print([m for m in sys.modules if m == 'matplotlib'])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "matplotlib" not in done.stdout
+
+
+def past_a_face(tree, room):
+    """Yield imports of a file that lies in another room; rooms are entered through their faces (`__init__`)."""
+    for node in ast.walk(tree):
+        if not (isinstance(node, ast.ImportFrom) and (node.module or "").startswith("tethership.")):
+            continue
+        path = SOURCE.joinpath(*node.module.split(".")[1:])
+        entered = node.module.split(".")[1]
+        if entered not in (room, "cli") and not path.is_dir() and (SOURCE / entered).is_dir():
+            yield node.module
+
+
+def test_rooms_are_entered_through_their_faces():
+    """A room's face lists what others may use of it; commands of a study take the command line's own pieces."""
+    found = {}
+    for file in SOURCE.rglob("*.py"):
+        room = file.relative_to(SOURCE).parts[0]
+        if past := sorted(set(past_a_face(ast.parse(file.read_text(encoding="utf-8")), room))):
+            found[str(file.relative_to(SOURCE))] = past
+    assert found == {}
+
+
+def test_an_import_past_a_face_is_seen():
+    tree = ast.parse("from tethership.plant.loop import ClosedLoop\nfrom tethership.plant import State")
+    assert list(past_a_face(tree, "analysis")) == ["tethership.plant.loop"]
+    assert list(past_a_face(tree, "plant")) == []
+
+
+@pytest.mark.parametrize("face", sorted(SOURCE.rglob("__init__.pyi")), ids=lambda p: str(p.parent.relative_to(SOURCE)))
+def test_what_a_face_lists_is_there(face):
+    name = ".".join(("tethership", *face.parent.relative_to(SOURCE).parts))
+    room = importlib.import_module(name)
+    for listed in re.findall(r"^from \.\S* import (\w+) as", face.read_text(encoding="utf-8"), re.MULTILINE):
+        assert getattr(room, listed) is not None, listed

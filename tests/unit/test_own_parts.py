@@ -16,6 +16,7 @@ from tethership.campaign import Cases, fly_cases, layer_switches
 from tethership.cli import main
 from tethership.plant import ClosedLoop, Command, State
 from tethership.scenario.build import build_system
+from tethership.scenario.load import packaged_text
 
 CODE = """
 import jax.numpy as jnp
@@ -372,9 +373,8 @@ def test_a_base_that_stands_on_itself_or_is_not_there(tmp_path):
 
 def test_files_of_a_base_in_another_folder_are_found(tmp_path):
     (tmp_path / "deep").mkdir()
-    packaged = ts.scenario.load.packaged_text
-    (tmp_path / "deep" / "ship.toml").write_text(packaged("vehicles", "lotte"))
-    text = packaged("scenarios", "docking").replace('vehicle = "lotte" ', 'vehicle = "ship.toml" ')
+    (tmp_path / "deep" / "ship.toml").write_text(packaged_text("vehicles", "lotte"))
+    text = packaged_text("scenarios", "docking").replace('vehicle = "lotte" ', 'vehicle = "ship.toml" ')
     assert "ship.toml" in text
     (tmp_path / "deep" / "base.toml").write_text(text)
     (tmp_path / "mine.toml").write_text('base = "deep/base.toml"\n')

@@ -19,9 +19,8 @@ from tethership.campaign.probability import estimate
 from tethership.campaign.schema import Requirement
 from tethership.campaign.trust import ON_TENSION, share_outside, with_snap
 from tethership.campaign.work import COMPARED
-from tethership.scenario.wind_file import record_warning
-from tethership.simulation import Outcome
-from tethership.simulation.batch import CODES
+from tethership.scenario import record_warning
+from tethership.simulation import CODES, Outcome
 
 UNBALANCED = 1e-3
 """What a trim may leave in the units of its balance, beyond which a case has no equilibrium [-].

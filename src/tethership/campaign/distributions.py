@@ -12,7 +12,7 @@ import numpy as np
 import scipy.stats
 from pydantic import Field, model_validator
 
-from tethership.scenario.quantity import Table, converted
+from tethership.scenario import Table, converted
 
 MOST_LEVELS = 100_000
 """Levels of one quantity on a grid."""

@@ -15,17 +15,20 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from tethership.analysis.loci.continuation import nearby_equilibrium
-from tethership.analysis.trim.problem import Question, ask, pose
+from tethership.analysis.loci import nearby_equilibrium
+from tethership.analysis.trim import Question, ask, pose
 from tethership.errors import ConfigError
-from tethership.plant.loop import ClosedLoop
-from tethership.scenario import Scenario, ScenarioConfig, list_parameters
-from tethership.scenario.build import build_system
-from tethership.scenario.build_loop import build_loop
-from tethership.scenario.parameters import find_parameter, with_values
-from tethership.simulation.batch import STEP, beats_of, differing, fly_lanes, hoisted, metrics_of
-from tethership.simulation.events import Stop
-from tethership.simulation.start import moved_start
+from tethership.plant import ClosedLoop
+from tethership.scenario import (
+    Scenario,
+    ScenarioConfig,
+    build_loop,
+    build_system,
+    find_parameter,
+    list_parameters,
+    with_values,
+)
+from tethership.simulation import STEP, Stop, beats_of, differing, fly_lanes, hoisted, metrics_of, moved_start
 
 BATCH = 168
 """Flights of one compiled call: fixed, so that every campaign runs the same program."""

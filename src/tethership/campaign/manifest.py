@@ -12,8 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from tethership._version import __version__
 from tethership.campaign.plan import Plan, lanes_for
 from tethership.errors import ConfigError
-from tethership.results.files import write_atomically
-from tethership.results.seal import array_digest, is_whole, sealed
+from tethership.results import array_digest, is_whole, sealed, write_atomically
 
 MANIFEST = "campaign.json"
 

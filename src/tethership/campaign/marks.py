@@ -11,8 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tethership.results.files import write_atomically
-from tethership.results.seal import is_whole, sealed, table_digest
+from tethership.results import is_whole, sealed, table_digest, write_atomically
 
 MARKS = "finished"
 

@@ -15,10 +15,17 @@ from tethership.campaign.flights import BATCH, FEW, SWITCHES
 from tethership.campaign.sampling import Sample, draw
 from tethership.campaign.schema import CampaignConfig, LawConfig
 from tethership.errors import ConfigError, shown
-from tethership.scenario import Scenario, check_values, find_parameter, list_parameters, load_scenario
-from tethership.scenario.changes import Document
-from tethership.scenario.control_schema import LAYERS
-from tethership.scenario.load import read_document, validated
+from tethership.scenario import (
+    LAYERS,
+    Document,
+    Scenario,
+    check_values,
+    find_parameter,
+    list_parameters,
+    load_scenario,
+    read_document,
+    validated,
+)
 
 
 def lanes_for(cases: int) -> int:

@@ -14,7 +14,7 @@ from tethership.campaign.kept import keep_flights
 from tethership.campaign.plan import Plan, make_plan
 from tethership.campaign.store import CampaignStore, owner, whole_results
 from tethership.errors import ConfigError
-from tethership.results.lock import held
+from tethership.results import held
 
 
 class Campaign(NamedTuple):

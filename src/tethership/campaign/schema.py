@@ -6,9 +6,7 @@ import numpy as np
 from pydantic import Field, field_validator, model_validator
 
 from tethership.campaign.distributions import Distribution
-from tethership.scenario.control_schema import check_layers
-from tethership.scenario.names import Title, check_apart
-from tethership.scenario.quantity import Quantity, Table
+from tethership.scenario import Quantity, Table, Title, check_apart, check_layers
 
 MOST_CASES = 10_000_000
 """Cases of a campaign."""

@@ -19,9 +19,8 @@ from tethership.campaign.manifest import MANIFEST, Manifest, read_manifest, writ
 from tethership.campaign.marks import MARKS, Form, Mark, read_marks, write_mark
 from tethership.campaign.plan import Batch, Plan
 from tethership.errors import ConfigError, TethershipWarning
-from tethership.results.seal import array_digest, table_digest
-from tethership.simulation import Outcome
-from tethership.simulation.batch import CODES
+from tethership.results import array_digest, table_digest
+from tethership.simulation import CODES, Outcome
 
 CURE = "what is finished is kept: make room and run the same command again"
 """What to do where results cannot be written."""

@@ -9,10 +9,7 @@ from tethership.analysis import trim
 from tethership.campaign.flights import Flyer
 from tethership.campaign.plan import Batch, Work
 from tethership.errors import ConfigError
-from tethership.scenario import Scenario, scenario_at
-from tethership.scenario.control_schema import LAYERS
-from tethership.scenario.load import from_document
-from tethership.scenario.own_code import find_beside
+from tethership.scenario import LAYERS, Scenario, find_beside, from_document, scenario_at
 from tethership.simulation import Flight, dock
 
 COMPARED = ("docking_time", "tension_max", "tension_mean", "ADC", "E", "theta_rms")

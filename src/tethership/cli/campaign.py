@@ -24,7 +24,7 @@ from tethership.cli.progress import Pace, Report, progress_bar
 from tethership.cli.result import Result, show
 from tethership.cli.tables import CsvOption, Row, Table
 from tethership.errors import ConfigError, SolveError
-from tethership.scenario.names import check_title
+from tethership.scenario import check_title
 
 EXAMPLE = "Example: tethership campaign gusts --samples 1000 --workers 2"
 
@@ -66,7 +66,7 @@ def campaign(
     Results are kept batch by batch: interrupted at any moment, the same command goes on. Writes results.zarr,
     report.html, tables as CSV and the worst flights with their histories into --out.
     """
-    from tethership.campaign.run import run_campaign
+    from tethership.campaign import run_campaign
 
     own = {
         key: value for key, value in (("samples", samples), ("seed", seed), ("sampling", sampling)) if value is not None
@@ -106,7 +106,7 @@ def _counted(report: Report) -> Callable[[int, int], None]:
 
 def _concluded(found: Any, folder: Path) -> tuple[dict[str, Any], list[str]]:
     """Return what the flights say, and the files it was written to."""
-    from tethership.view.campaign.report import write_campaign
+    from tethership.view.campaign import write_campaign
 
     plan, answers = found.plan, found.answers
     footer = provenance(campaign=plan.name, digest=plan.digest()[:16])
@@ -140,8 +140,8 @@ def _numbers(result: dict[str, Any]) -> list[Row]:
 
 def _shown(result: dict[str, Any]) -> list[tuple[str, list[Row]]]:
     """Return titles and rows of what is told: probabilities law by law, and verdicts."""
-    from tethership.view.campaign.setting import trusted
-    from tethership.view.flight.captions import percent, percents, trust
+    from tethership.view.campaign import trusted
+    from tethership.view.flight import percent, percents, trust
 
     found = []
     for name, law in result["laws"].items():

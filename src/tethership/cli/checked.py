@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from tethership.errors import ConfigError, shown
-from tethership.scenario.reading import LARGEST_WHOLE, check_path
+from tethership.scenario import LARGEST_WHOLE, check_path
 
 
 def checked(command: Callable[..., None]) -> Callable[..., None]:

@@ -14,11 +14,8 @@ from tethership._version import __version__
 from tethership.cli.completion import complete_formulation, complete_line, complete_parameter, complete_scenario
 from tethership.cli.tables import check_csv
 from tethership.errors import ConfigError, shown, suggestion
-from tethership.results.files import check_writable
-from tethership.scenario import Scenario, load_scenario
-from tethership.scenario.quantity import number_with_unit
-from tethership.scenario.reading import parse_json
-from tethership.scenario.schema import LINES
+from tethership.results import check_writable
+from tethership.scenario import LINES, Scenario, load_scenario, number_with_unit, parse_json
 
 WRONG_INPUT = 2
 """Exit code for wrong input."""

@@ -5,8 +5,7 @@ Each returns what begins with what is typed; a path is completed by the shell it
 
 from collections.abc import Callable, Iterable
 
-from tethership.scenario import list_packaged, list_parameters, load_scenario
-from tethership.scenario.parameters import ALIASES
+from tethership.scenario import ALIASES, list_packaged, list_parameters, load_scenario
 
 
 def _offered(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]:

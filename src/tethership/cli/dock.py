@@ -22,7 +22,7 @@ from tethership.cli.points import trimmed_start
 from tethership.cli.progress import flying
 from tethership.cli.tables import CsvOption
 from tethership.errors import ConfigError
-from tethership.scenario.load import read_solver
+from tethership.scenario import read_solver
 
 __all__ = ["dock", "summary"]
 

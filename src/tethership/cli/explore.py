@@ -45,7 +45,7 @@ def explore(
         raise ConfigError(f"--host {host}: the page is served to this machine alone; leave --host out")
     name, place = _placed(scenario, folder)
     with needs("explore"):
-        from tethership.explorer.server import Explorer, serve_until_signal
+        from tethership.explorer import Explorer, serve_until_signal
 
     explorer = Explorer(name, place, port)
 

@@ -34,7 +34,7 @@ def export(
 
     In MATLAB the columns are variables and their units are in the struct `units`. Parquet needs pyarrow.
     """
-    from tethership.results.columns import write_table
+    from tethership.results import write_table
     from tethership.simulation import Flight
 
     if flight.is_dir():

@@ -10,9 +10,8 @@ from tethership.cli.common import JsonOption
 from tethership.cli.completion import complete_scenario
 from tethership.cli.result import Result, show
 from tethership.errors import ConfigError
-from tethership.results.files import write_atomically
-from tethership.scenario.load import check_file, packaged_text, read_document
-from tethership.scenario.names import check_title
+from tethership.results import write_atomically
+from tethership.scenario import check_file, check_title, packaged_text, read_document
 
 VALIDATE_EXAMPLE = "Example: tethership validate my_docking.toml"
 NEW_EXAMPLE = "Example: tethership new my_docking"

@@ -9,7 +9,7 @@ from tethership.cli.completion import complete_layers, complete_solver
 from tethership.cli.progress import flying, stage
 from tethership.cli.result import Result, show
 from tethership.cli.tables import Row, Table
-from tethership.results.files import write_together
+from tethership.results import write_together
 from tethership.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -89,8 +89,7 @@ def _written(flight: "Flight", out: Path, name: str) -> list[str]:
 
 def _picture(flight: "Flight") -> bytes | None:
     """Return the picture; a flight too short to draw has none."""
-    from tethership.view import plot_docking
-    from tethership.view.picture import png
+    from tethership.view import plot_docking, png
 
     if flight.data.sizes["time"] < 2:
         return None
@@ -110,8 +109,8 @@ def _replay(flight: "Flight") -> str | None:
 
 def summary(scenario: Scenario, flight: "Flight") -> dict[str, Any]:
     """Return the keys that scripts may rely on, SI, θ_rms in degrees."""
-    from tethership.scenario.wind_file import record_warning
-    from tethership.simulation.quasi_static import quasi_static_warning
+    from tethership.scenario import record_warning
+    from tethership.simulation import quasi_static_warning
 
     flown = float(flight.data["time"][-1]) if flight.data.sizes["time"] else 0.0
     return {

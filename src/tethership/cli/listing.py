@@ -9,9 +9,8 @@ from tethership.cli.completion import complete_kind, complete_scenario
 from tethership.cli.result import Result, show
 from tethership.cli.tables import Cell, CsvOption, Table
 from tethership.errors import ConfigError, shown, suggestion
-from tethership.results.schema import VARIABLES
-from tethership.scenario import list_parameters, load_scenario
-from tethership.scenario.load import KINDS, describe_packaged
+from tethership.results import VARIABLES
+from tethership.scenario import KINDS, describe_packaged, list_parameters, load_scenario
 
 EXAMPLE = "Example: tethership list parameters mine.toml --csv parameters.csv"
 

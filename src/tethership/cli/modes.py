@@ -23,7 +23,7 @@ from tethership.cli.progress import stage
 from tethership.cli.result import Result, show
 from tethership.cli.tables import Cell, CsvOption, Table
 from tethership.errors import ConfigError, suggestion
-from tethership.results.files import write_together
+from tethership.results import write_together
 
 if TYPE_CHECKING:
     from tethership.analysis import LinearModel, Mode, Modes, Sensitivities, TrimPoint
@@ -109,8 +109,8 @@ def _check(part: str, loop: str, sensitivity: str | None) -> None:
 def _write(folder: Path, model: "LinearModel", document: dict[str, Any]) -> None:
     """Write the result, the linear model and its modes drawn as motion of the ship."""
     with stage("draw"):
-        from tethership.view.linear.mode_shape import plot_all_modes
-        from tethership.view.picture import png
+        from tethership.view import png
+        from tethership.view.linear import plot_all_modes
 
         drawn = png(plot_all_modes(model), 120, model.run)
     files = {"model.nc": model.content(), "modes.json": json_text(document), "modes.png": drawn}

@@ -29,10 +29,8 @@ from tethership.cli.progress import stage
 from tethership.cli.result import Result, show
 from tethership.cli.tables import CsvOption, Table
 from tethership.errors import ConfigError, shown
-from tethership.results.files import write_together
-from tethership.scenario import Scenario
-from tethership.scenario.quantity import number_with_unit
-from tethership.scenario.reading import parse_json
+from tethership.results import write_together
+from tethership.scenario import Scenario, number_with_unit, parse_json
 
 if TYPE_CHECKING:
     from tethership.analysis import Sweep
@@ -70,7 +68,7 @@ def sweep(
 
     Writes a picture and an interactive page into --out. With --figure and no --formulation, both formulations.
     """
-    from tethership.analysis.loci.sweep_warnings import sweep_warnings
+    from tethership.analysis.loci import sweep_warnings
 
     if (over is None) == (figure is None):
         raise ConfigError("name what to vary, --over wind=6:12:13, or a figure of the paper, --figure 7 (not both)")
@@ -101,9 +99,8 @@ def _swept(
 ) -> tuple[dict[str, Any], list["Sweep"]]:
     """Return the result of a sweep; writes root_locus.png and root_locus.html."""
     from tethership.analysis import sweep as compute
-    from tethership.view.linear.interactive_locus import interactive_root_locus, page
-    from tethership.view.linear.root_locus import plot_root_loci
-    from tethership.view.picture import png
+    from tethership.view import png
+    from tethership.view.linear import interactive_root_locus, page, plot_root_loci
 
     with stage("sweep"):
         found = compute(scenario, *axes, loop=loop)
@@ -124,7 +121,7 @@ def _swept(
 
 def summary(found: "Sweep") -> dict[str, Any]:
     """Return the keys that scripts may rely on, SI; angles among the parameters in degrees."""
-    from tethership.analysis.loci.sweep_warnings import sweep_warnings
+    from tethership.analysis.loci import sweep_warnings
 
     first = next(iter(found.values))
     factors = {name: 180.0 / math.pi if unit == "rad" else 1.0 for name, unit in found.units.items()}
@@ -230,7 +227,7 @@ def _range(scenario: Scenario, name: str, text: str) -> np.ndarray:
 
 def _points(name: str, text: str, typed: str) -> int:
     """Return the number of points, no more than a sweep may have."""
-    from tethership.analysis.loci.grid import MOST_POINTS
+    from tethership.analysis.loci import MOST_POINTS
 
     try:
         count = int(typed)
@@ -243,8 +240,7 @@ def _points(name: str, text: str, typed: str) -> int:
 
 def _number(scenario: Scenario, name: str, text: str) -> float:
     """Return one end of a range [SI]; a unit is converted to that of the parameter."""
-    from tethership.scenario.parameters import find_parameter, list_parameters
-    from tethership.scenario.quantity import SI_UNIT, converted
+    from tethership.scenario import SI_UNIT, converted, find_parameter, list_parameters
 
     parameter = find_parameter(list_parameters(scenario.config), name, scenario.name)
     with_unit = number_with_unit(text)

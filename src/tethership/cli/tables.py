@@ -13,7 +13,7 @@ from typing import Annotated, Any, NamedTuple
 import typer
 
 from tethership.errors import ConfigError
-from tethership.results.files import check_writable, write_atomically
+from tethership.results import check_writable, write_atomically
 
 CsvOption = Annotated[
     Path | None, typer.Option("--csv", metavar="FILE", help="Also write the table as CSV, every digit of it.")

@@ -21,9 +21,7 @@ from tethership.cli.common import (
 from tethership.cli.result import Result, show
 from tethership.cli.tables import Cell, CsvOption, Row, Table
 from tethership.errors import ConfigError, SolveError
-from tethership.results.files import write_atomically
-from tethership.results.limits import ratios_passed
-from tethership.results.schema import GROUND, REGIMES
+from tethership.results import GROUND, REGIMES, ratios_passed, write_atomically
 from tethership.scenario import Scenario
 
 FINE = 513

@@ -22,7 +22,7 @@ from tethership.cli.points import clearance_rows, point_keys
 from tethership.cli.progress import stage
 from tethership.cli.result import Result, show
 from tethership.cli.tables import CsvOption, Row, Table
-from tethership.results.files import write_atomically
+from tethership.results import write_atomically
 from tethership.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def trim(
     """
     from tethership.analysis import TrimOutcome
     from tethership.analysis import trim as solve
-    from tethership.plant.state import STATE_NAMES
+    from tethership.plant import STATE_NAMES
 
     loaded = chosen_scenario(scenario, wind, formulation, changes, line, trust)
     writable(out, csv)

@@ -19,7 +19,7 @@ from tethership.cli.progress import progress_bar
 from tethership.cli.result import Result, show
 from tethership.cli.tables import CsvOption, Row, Table
 from tethership.errors import ConfigError
-from tethership.results.files import write_together
+from tethership.results import write_together
 
 EXAMPLE = "Example: tethership tune docking_paper --wind 12 --out tuned"
 
@@ -47,8 +47,8 @@ def tune(
     saturates, the tension stays below the envelope's tear force, docking within 1.1 times the shortest time. Writes
     tuning.json and, for packaged scenarios, NAME_retuned.toml.
     """
-    from tethership.tuning.tune import tune as search
-    from tethership.tuning.tune import tuning_document
+    from tethership.tuning import tune as search
+    from tethership.tuning import tuning_document
 
     searched = min(24, flights) if searched is None else searched
     if searched > flights:
@@ -81,8 +81,8 @@ def _written(document: dict[str, Any], name: str, changes: list[str] | None, out
     """Write the tuning and its scenario; returns the files."""
     import json as json_module
 
-    from tethership.scenario.load import packaged_text
-    from tethership.tuning.scenario_file import retuned_text
+    from tethership.scenario import packaged_text
+    from tethership.tuning import retuned_text
 
     files = {out / "tuning.json": json_module.dumps(document, indent=1)}
     if not name.endswith(".toml") and not changes:

@@ -15,7 +15,7 @@ from tethership.explorer.queue import Desk
 from tethership.explorer.refresh import TEXTS, Showing, request_key
 from tethership.explorer.requests import Understanding
 from tethership.explorer.views import verdict
-from tethership.view.report.page_file import page_text
+from tethership.view.report import page_text
 
 FIELDS = {"name": ALL, "part": "field"}
 """All fields of the panel, in the same order."""

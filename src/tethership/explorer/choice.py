@@ -9,10 +9,7 @@ from typing import Any, NamedTuple
 
 from tethership.errors import ConfigError
 from tethership.explorer.fields import in_si, known_parameters, shown, typed
-from tethership.scenario import Parameter, Scenario
-from tethership.scenario.changes import Document, is_share
-from tethership.scenario.control_schema import LAYERS
-from tethership.scenario.parameters import missing_kind, value_at
+from tethership.scenario import LAYERS, Document, Parameter, Scenario, is_share, missing_kind, value_at
 
 FORMULATIONS = ("consistent", "published")
 

@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 from tethership.errors import ConfigError
 from tethership.errors import shown as shown_text
-from tethership.scenario import Parameter, ScenarioConfig, list_parameters
-from tethership.scenario.quantity import converted, number_with_unit
+from tethership.scenario import Parameter, ScenarioConfig, converted, list_parameters, number_with_unit
 
 SHOWN_UNITS = {"rad": "deg"}
 """Units in which numbers are shown and typed, where that is not the SI unit."""

@@ -5,9 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from tethership.errors import ConfigError
-from tethership.results.files import write_atomically
-from tethership.scenario import Scenario, list_packaged, load_scenario
-from tethership.scenario.load import read_document
+from tethership.results import write_atomically
+from tethership.scenario import Scenario, list_packaged, load_scenario, read_document
 
 FILE_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,80}\.toml")
 """Names that may be read and written: no separators, nothing hidden."""

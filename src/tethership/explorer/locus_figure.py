@@ -8,9 +8,7 @@ import plotly.graph_objects as go
 from tethership.analysis import Modes, Sweep
 from tethership.explorer.plain import plain_figure
 from tethership.view import style
-from tethership.view.linear.interactive_locus import REFERENCE, interactive_root_locus
-from tethership.view.linear.mode_names import ANNOTATION, mode_names
-from tethership.view.linear.root_locus import SLOWEST
+from tethership.view.linear import ANNOTATION, REFERENCE, SLOWEST, interactive_root_locus, mode_names
 
 HOVER = "<b>%{text}</b><br>chosen scenario<br>λ = %{x:.5f} %{y:+.5f}i 1/s<extra></extra>"
 

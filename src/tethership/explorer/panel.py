@@ -7,8 +7,7 @@ from dash import dcc, html
 
 from tethership.explorer.choice import FORMULATIONS
 from tethership.explorer.fields import Field, groups
-from tethership.scenario import Scenario
-from tethership.scenario.control_schema import LAYERS
+from tethership.scenario import LAYERS, Scenario
 
 OPEN = ("Air", "Trim", "Cable")
 """Groups that are open at first."""

@@ -17,8 +17,7 @@ from tomlkit.items import AoT, Table
 
 from tethership.errors import ConfigError
 from tethership.explorer.choice import Choice
-from tethership.scenario import Scenario
-from tethership.scenario.parameters import list_parameters
+from tethership.scenario import Scenario, list_parameters
 
 REMARK = "made in tethership explore; they win over what stands elsewhere in this file"
 

@@ -16,9 +16,7 @@ from tethership.explorer.fields import in_si, known_parameters, shown, shown_uni
 from tethership.explorer.folder import Folder
 from tethership.explorer.queue import Request
 from tethership.explorer.recipe import Span, command, file_text
-from tethership.scenario import Parameter, Scenario, find_parameter
-from tethership.scenario.load import packaged_text
-from tethership.scenario.reading import read_text
+from tethership.scenario import Parameter, Scenario, find_parameter, packaged_text, read_text
 
 MOST_POINTS = 400
 """Points of a root locus at most."""

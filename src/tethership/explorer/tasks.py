@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 
 from tethership.errors import ConfigError
-from tethership.plant.state import STATE_NAMES
-from tethership.scenario import Scenario, load_scenario
-from tethership.scenario.quantity import converted
+from tethership.plant import STATE_NAMES
+from tethership.scenario import Scenario, converted, load_scenario
 
 Report = Callable[[str, float | None], None]
 """Called with what is being done and the share that is done, None where that is not known; raises where to stop."""
@@ -93,7 +92,7 @@ def _trim(scenario: Scenario, options: Mapping[str, Any], report: Report) -> dic
 def _locus(scenario: Scenario, options: Mapping[str, Any], report: Report) -> dict[str, Any]:
     """Return the root locus along a parameter and the modes of the scenario itself."""
     from tethership.analysis import linearize, sweep, trim
-    from tethership.analysis.loci.sweep_warnings import sweep_warnings
+    from tethership.analysis.loci import sweep_warnings
 
     name, points = options["name"], int(options["points"])
     low, high = (converted(value, unit, options["unit"]) for value, unit in (options["low"], options["high"]))
@@ -148,8 +147,7 @@ def _mode(mode: Any) -> dict[str, Any]:
 def _flight(scenario: Scenario, options: Mapping[str, Any], report: Report) -> dict[str, Any]:
     """Return a flight's metrics and histories."""
     from tethership.analysis import trim
-    from tethership.simulation import dock
-    from tethership.simulation.trust import verdict
+    from tethership.simulation import dock, verdict
 
     report("looking for the equilibrium", None)
     point = trim(scenario)
@@ -166,7 +164,7 @@ def _flight(scenario: Scenario, options: Mapping[str, Any], report: Report) -> d
         raise ConfigError(f"the flight ended at its start: {flight.outcome.value}")
     report("drawing", 1.0)
     from tethership.explorer.plain import plain_figure
-    from tethership.view.flight.interactive_histories import interactive_histories
+    from tethership.view.flight import interactive_histories
 
     start = [f"The start is no equilibrium. {point.message}"] if point.saturated else []
     return {

@@ -15,13 +15,10 @@ from plotly.subplots import make_subplots
 from tethership.analysis import TrimPoint
 from tethership.explorer.plain import plain_figure
 from tethership.plant import State, TetheredAirship
-from tethership.scenario import Scenario
-from tethership.scenario.build_air import ground_level
+from tethership.scenario import Scenario, ground_level
 from tethership.spatial import rotation_matrix
 from tethership.view import style
-from tethership.view.flight.projection import FROM_EAST, FROM_TOP, View
-from tethership.view.flight.ship import ship_outlines, ship_shape
-from tethership.view.flight.thinning import listed
+from tethership.view.flight import FROM_EAST, FROM_TOP, View, listed, ship_outlines, ship_shape
 
 CURVE_POINTS = 25
 

@@ -14,7 +14,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from tethership.spatial.constants import (
+from tethership.spatial import (
     GAS_CONSTANT_AIR,
     SEA_LEVEL_PRESSURE,
     SEA_LEVEL_TEMPERATURE,

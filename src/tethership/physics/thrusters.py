@@ -10,8 +10,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from tethership.spatial import Wrench
-from tethership.spatial.constants import SEA_LEVEL_DENSITY
+from tethership.spatial import SEA_LEVEL_DENSITY, Wrench
 
 
 class Thrusters(eqx.Module):

@@ -6,9 +6,8 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from tethership.physics.anchor import AbstractAnchorMotion
+from tethership.physics import AbstractAnchorMotion, Winch
 from tethership.physics.cable import AbstractTensionLaw, CableLoad
-from tethership.physics.winch import Winch
 from tethership.plant.environment import Environment
 from tethership.plant.state import State
 from tethership.spatial import rotation_matrix, safe_norm

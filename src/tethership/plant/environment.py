@@ -7,11 +7,8 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from tethership.physics.atmosphere import AbstractAtmosphere
-from tethership.physics.ground_effect import GroundEffect
-from tethership.physics.gust import AbstractGust, CosineGust
+from tethership.physics import AbstractAtmosphere, AbstractGust, AbstractWind, CosineGust, GroundEffect
 from tethership.physics.turbulence import AbstractFluctuation
-from tethership.physics.wind import AbstractWind
 
 
 class Air(eqx.Module):

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 from jaxtyping import Array, Float
 
-from tethership.control.law import Measurement
+from tethership.control import Measurement
 from tethership.plant.cable import CableState
 from tethership.plant.part import PartStates
 from tethership.plant.state import Command, PlantState, State

@@ -47,7 +47,7 @@ def actuators(plant: TetheredAirship) -> Layout:
     return Layout(throttles + deflections, ("1",) * len(throttles) + ("rad",) * len(deflections))
 
 
-def parts(plant: TetheredAirship) -> Layout:
+def part_layout(plant: TetheredAirship) -> Layout:
     """Return the states of the parts of one's own, `part.state`."""
     own = [
         (f"{name}.{state}", unit)
@@ -63,7 +63,7 @@ def open_loop(plant: TetheredAirship) -> Layout:
     They are those of the ship [m/s, rad/s, rad, m], what actuators that lag have reached [-, rad], and the states of
     parts of one's own in their units.
     """
-    return SHIP.plus(actuators(plant)).plus(parts(plant))
+    return SHIP.plus(actuators(plant)).plus(part_layout(plant))
 
 
 def closed_loop(loop: ClosedLoop) -> Layout:
@@ -78,7 +78,7 @@ def closed_loop(loop: ClosedLoop) -> Layout:
     memories = jax.eval_shape(lambda: loop.unpack(jnp.zeros(size(loop))).law)
     count = sum(int(np.prod(leaf.shape)) for leaf in jax.tree.leaves(memories))
     memory = Layout(tuple(f"{MEMORY}{i + 1}" for i in range(count)), ("1",) * count)
-    layout = SHIP.plus(lengths).plus(actuators(loop.plant)).plus(parts(loop.plant)).plus(memory)
+    layout = SHIP.plus(lengths).plus(actuators(loop.plant)).plus(part_layout(loop.plant)).plus(memory)
     if loop.sampling is None:
         return layout
     channels = Layout(

@@ -14,8 +14,7 @@ import jax.numpy as jnp
 from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Float
 
-from tethership.control.law import AbstractLaw, Asked, Correction, Measurement
-from tethership.control.sampling import Held, Sampling
+from tethership.control import AbstractLaw, Asked, Correction, Held, Measurement, Sampling
 from tethership.errors import ConfigError, suggestion
 from tethership.plant.cable import CableState
 from tethership.plant.instant import Instant

@@ -9,8 +9,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from tethership.errors import ConfigError
-from tethership.physics.actuators import Actuators
-from tethership.physics.anchor import HarmonicMotion, SteadyMotion
+from tethership.physics import Actuators, HarmonicMotion, SteadyMotion
 from tethership.plant.cable import Cable, CableState
 from tethership.plant.cable_between import cable_between as cable_between
 from tethership.plant.environment import Environment

@@ -9,14 +9,16 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from tethership.physics.apparent_mass import AbstractApparentMass
-from tethership.physics.buoyancy import Buoyancy
-from tethership.physics.envelope import AbstractEnvelope
-from tethership.physics.fins import Fins
-from tethership.physics.gravity import Gravity
-from tethership.physics.hull import Strips
-from tethership.physics.rigid_body import RigidBody
-from tethership.physics.thrusters import Thrusters
+from tethership.physics import (
+    AbstractApparentMass,
+    AbstractEnvelope,
+    Buoyancy,
+    Fins,
+    Gravity,
+    RigidBody,
+    Strips,
+    Thrusters,
+)
 from tethership.plant.environment import Air, Environment
 from tethership.plant.state import Command, State
 from tethership.spatial import Wrench, euler_rates, rotation_matrix, solve_symmetric

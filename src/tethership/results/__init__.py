@@ -1,6 +1,5 @@
 """Names, units and files of outputs; metrics on arrays."""
 
-from tethership.results.metrics import docking_metrics
-from tethership.results.schema import VARIABLES, Variable
+import lazy_loader
 
-__all__ = ["VARIABLES", "Variable", "docking_metrics"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

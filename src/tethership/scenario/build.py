@@ -7,11 +7,9 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from tethership.physics.anchor import AbstractAnchorMotion, HarmonicMotion, SteadyMotion
+from tethership.physics import AbstractAnchorMotion, HarmonicMotion, SteadyMotion, Winch
 from tethership.physics.cable import AbstractTensionLaw, CableLoad, ElasticCatenary, PublishedTension
-from tethership.physics.winch import Winch
-from tethership.plant import Cable, TetheredAirship
-from tethership.plant.names import PartNames
+from tethership.plant import Cable, PartNames, TetheredAirship
 from tethership.scenario.build_air import build_environment
 from tethership.scenario.build_ship import build_actuators, build_hull, build_ship, slice_integrals
 from tethership.scenario.own_code import make_line, make_part

@@ -6,9 +6,20 @@ Written with jax.numpy, as `scenario.build` is.
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from tethership.physics.atmosphere import AbstractAtmosphere, ConstantAtmosphere, StandardAtmosphere
-from tethership.physics.ground_effect import GroundEffect
-from tethership.physics.gust import AbstractGust, BareCosine, CosineGust, RepeatedCosine
+from tethership.physics import (
+    AbstractAtmosphere,
+    AbstractGust,
+    AbstractWind,
+    BareCosine,
+    ConstantAtmosphere,
+    CosineGust,
+    GroundEffect,
+    LogarithmicWind,
+    PowerLawWind,
+    RepeatedCosine,
+    StandardAtmosphere,
+    UniformWind,
+)
 from tethership.physics.turbulence import (
     REFERENCE_HEIGHT,
     SPECTRA,
@@ -18,7 +29,6 @@ from tethership.physics.turbulence import (
     low_altitude_scales,
     make_turbulence,
 )
-from tethership.physics.wind import AbstractWind, LogarithmicWind, PowerLawWind, UniformWind
 from tethership.plant import Environment
 from tethership.scenario.schema import ConstantAir, ScenarioConfig
 from tethership.scenario.wind_schema import (

@@ -9,26 +9,29 @@ from functools import partial
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from tethership.physics.actuators import QUICK, Actuators
-from tethership.physics.apparent_mass import (
+from tethership.physics import (
+    QUICK,
     AbstractApparentMass,
+    AbstractEnvelope,
+    Actuators,
+    BodyOfRevolution,
+    Buoyancy,
+    ConsistentEnvelope,
+    Fins,
+    Gravity,
     KirchhoffApparentMass,
     LambFactors,
     PublishedApparentMass,
+    PublishedEnvelope,
+    RigidBody,
+    SliceIntegrals,
+    Strips,
+    Thrusters,
+    ellipsoid,
+    gertler,
+    gertler_from_shape,
     lamb1932,
 )
-from tethership.physics.buoyancy import Buoyancy
-from tethership.physics.envelope import (
-    AbstractEnvelope,
-    ConsistentEnvelope,
-    PublishedEnvelope,
-    SliceIntegrals,
-)
-from tethership.physics.fins import Fins
-from tethership.physics.gravity import Gravity
-from tethership.physics.hull import BodyOfRevolution, Strips, ellipsoid, gertler, gertler_from_shape
-from tethership.physics.rigid_body import RigidBody
-from tethership.physics.thrusters import Thrusters
 from tethership.plant import Airship
 from tethership.scenario.vehicle_schema import (
     EllipsoidHull,

@@ -14,9 +14,9 @@ from tethership.control import (
     LineOfSightNavigationLaw,
     NavigationLaw,
     RewindLaw,
+    Sampling,
     SineHeadingLaw,
 )
-from tethership.control.sampling import Sampling
 from tethership.plant import Command
 from tethership.scenario.control_schema import Share, Table
 from tethership.scenario.own_code import make_law

@@ -10,7 +10,7 @@ from typing import Annotated
 from pydantic import AfterValidator
 
 from tethership.errors import shown
-from tethership.plant.names import taken
+from tethership.plant import taken
 
 LONGEST = 60
 """Letters of a name."""

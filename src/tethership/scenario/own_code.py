@@ -15,7 +15,7 @@ import numpy as np
 from tethership.control import AbstractLaw
 from tethership.errors import ConfigError, suggestion
 from tethership.physics.cable import AbstractTensionLaw
-from tethership.plant.part import AbstractPart, says
+from tethership.plant import AbstractPart, says
 from tethership.scenario.own_schema import OwnCode, OwnLawConfig, OwnLine, OwnPartConfig
 from tethership.scenario.schema import CableConfig
 

@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from tethership.results.limits import LIMITS
+from tethership.results import LIMITS
 from tethership.scenario.control_schema import ControlConfig
 from tethership.scenario.names import Word, check_apart
 from tethership.scenario.own_schema import OwnLine, foreign

@@ -6,8 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 from pydantic import Field, field_validator, model_validator
 
-from tethership.physics.fins import USUAL_DEFLECTION
-from tethership.physics.hull import gertler_from_shape
+from tethership.physics import USUAL_DEFLECTION, gertler_from_shape
 from tethership.scenario.names import Part, check_apart
 from tethership.scenario.own_schema import OwnPartConfig
 from tethership.scenario.quantity import Matrix, Quantity, Table, Vector

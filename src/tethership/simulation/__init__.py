@@ -1,10 +1,5 @@
 """One flight: its start, integration, end, record and outcome."""
 
-from tethership.plant.loop import ClosedLoop
-from tethership.simulation.docking import dock, fly_again
-from tethership.simulation.events import Stop
-from tethership.simulation.flight import Flight
-from tethership.simulation.fly import fly
-from tethership.simulation.outcome import Outcome
+import lazy_loader
 
-__all__ = ["ClosedLoop", "Flight", "Outcome", "Stop", "dock", "fly", "fly_again"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

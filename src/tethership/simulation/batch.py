@@ -14,8 +14,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
-from tethership.plant.loop import ClosedLoop
-from tethership.results.metrics import averages
+from tethership.plant import ClosedLoop
+from tethership.results import averages
 from tethership.simulation.events import MARGINS, StopConditions
 from tethership.simulation.outcome import Outcome
 from tethership.simulation.tally import Signals, Tally, add, begin, signals

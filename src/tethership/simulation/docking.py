@@ -9,9 +9,7 @@ from pathlib import Path
 
 from tethership.control import AbstractLaw
 from tethership.errors import ConfigError, TethershipWarning
-from tethership.scenario import Scenario, SolverConfig
-from tethership.scenario.load import from_document
-from tethership.scenario.own_code import find_beside
+from tethership.scenario import Scenario, SolverConfig, find_beside, from_document
 from tethership.simulation.events import Stop
 from tethership.simulation.flight import Flight
 from tethership.simulation.fly import fly

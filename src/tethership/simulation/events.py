@@ -12,8 +12,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from tethership.errors import ConfigError
-from tethership.plant.cable import end_tension
-from tethership.plant.loop import ClosedLoop
+from tethership.plant import ClosedLoop, end_tension
 from tethership.scenario import Scenario
 from tethership.simulation.outcome import Outcome
 

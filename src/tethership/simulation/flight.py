@@ -8,12 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
-from tethership.results import docking_metrics, netcdf, store
-from tethership.results.columns import to_frame
-from tethership.results.schema import FLIGHT, VARIABLES
-from tethership.results.seal import run_id
-from tethership.scenario import ScenarioConfig
-from tethership.scenario.load import validated
+from tethership.results import FLIGHT, VARIABLES, docking_metrics, netcdf, run_id, store, to_frame
+from tethership.scenario import ScenarioConfig, validated
 from tethership.simulation import trust
 from tethership.simulation.header import check_header
 from tethership.simulation.outcome import Outcome

@@ -9,16 +9,11 @@ import jax
 import numpy as np
 
 from tethership._version import __version__
-from tethership.control import AbstractLaw
-from tethership.control.layers import LayeredLaw
+from tethership.control import AbstractLaw, LayeredLaw
 from tethership.errors import ConfigError, SolveError
-from tethership.plant import TetheredAirship
-from tethership.plant.layout import parts as part_layout
-from tethership.plant.plant import load_names, reading_names
+from tethership.plant import TetheredAirship, load_names, part_layout, reading_names
 from tethership.results import store
-from tethership.scenario import Scenario, SolverConfig, read_solver
-from tethership.scenario.build_loop import build_loop
-from tethership.scenario.laws import LAWS
+from tethership.scenario import LAWS, Scenario, SolverConfig, build_loop, read_solver
 from tethership.simulation.events import Stop
 from tethership.simulation.flight import Flight
 from tethership.simulation.segments import Progress, integrate

@@ -5,10 +5,8 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from tethership.errors import ConfigError, suggestion
-from tethership.plant.state import STATE_NAMES
-from tethership.scenario import SolverConfig
-from tethership.scenario.load import validated
-from tethership.scenario.quantity import SI_UNIT, Quantity
+from tethership.plant import STATE_NAMES
+from tethership.scenario import SI_UNIT, Quantity, SolverConfig, validated
 from tethership.simulation.outcome import Outcome
 
 Number = Annotated[float, Field(allow_inf_nan=False)]

@@ -14,8 +14,8 @@ import jax.numpy as jnp
 import optimistix
 from jaxtyping import Array, Bool, Float, Int
 
-from tethership.plant.loop import ClosedLoop
-from tethership.scenario.solver import SolverConfig
+from tethership.plant import ClosedLoop
+from tethership.scenario import SolverConfig
 from tethership.simulation.events import StopConditions
 from tethership.simulation.record import record
 

@@ -5,10 +5,8 @@ from collections.abc import Callable
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from tethership.control.heading import misalignment
-from tethership.plant.cable import Cable, CableState, end_tension
-from tethership.plant.instant import Instant
-from tethership.plant.loop import ClosedLoop
+from tethership.control import misalignment
+from tethership.plant import Cable, CableState, ClosedLoop, Instant, end_tension
 from tethership.spatial import rotation_matrix, safe_norm
 
 CURVE_POINTS = 17

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from tethership.plant import ClosedLoop
-from tethership.scenario.solver import SolverConfig
+from tethership.scenario import SolverConfig
 from tethership.simulation.events import MARGINS, StopConditions
 from tethership.simulation.integrate import SAMPLES, Segment, Stepping, fly_segment
 from tethership.simulation.interrupt import Interruption

@@ -11,11 +11,19 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from tethership.errors import ConfigError
-from tethership.plant import ClosedLoop, Command, State, TetheredAirship
-from tethership.plant.balance import DRIFT_LIMIT, drift, left_over, residual, residual_limit
-from tethership.plant.layout import parts as part_layout
-from tethership.scenario import Scenario
-from tethership.scenario.schema import StartConfig
+from tethership.plant import (
+    DRIFT_LIMIT,
+    ClosedLoop,
+    Command,
+    State,
+    TetheredAirship,
+    drift,
+    left_over,
+    part_layout,
+    residual,
+    residual_limit,
+)
+from tethership.scenario import Scenario, StartConfig
 from tethership.simulation.events import StopConditions
 from tethership.spatial import rotation_matrix
 

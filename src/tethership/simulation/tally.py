@@ -10,10 +10,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
 from tethership.control import misalignment
-from tethership.plant.cable import end_tension
-from tethership.plant.instant import Instant
-from tethership.plant.loop import ClosedLoop
-from tethership.results.metrics import Sums, integrands, jumped, share_above, travelled
+from tethership.plant import ClosedLoop, Instant, end_tension
+from tethership.results import Sums, integrands, jumped, share_above, travelled
 from tethership.simulation.cable_pace import LEAST_MASS, LEAST_TENSION, MEMORY, SLACK, TRUSTED, first_mode
 from tethership.spatial import safe_norm
 

@@ -8,10 +8,8 @@ from typing import Protocol
 import numpy as np
 import xarray as xr
 
-from tethership.results.limits import HARMFUL
-from tethership.results.metrics import refined, saturated_seconds, seconds_above
-from tethership.scenario import ScenarioConfig
-from tethership.scenario.wind_file import record_warning
+from tethership.results import HARMFUL, refined, saturated_seconds, seconds_above
+from tethership.scenario import ScenarioConfig, record_warning
 from tethership.simulation.outcome import Outcome
 from tethership.simulation.quasi_static import quasi_static_warning
 

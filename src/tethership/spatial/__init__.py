@@ -1,28 +1,5 @@
 """Rotations, wrenches and constants: the ground that everything else stands on."""
 
-from tethership.spatial.constants import SEA_LEVEL_DENSITY, STANDARD_GRAVITY
-from tethership.spatial.linear import solve_symmetric
-from tethership.spatial.rotations import (
-    body_rates,
-    euler_rate_matrix,
-    euler_rates,
-    horizontal_unit,
-    rotation_matrix,
-    safe_norm,
-    skew,
-)
-from tethership.spatial.wrench import Wrench
+import lazy_loader
 
-__all__ = [
-    "SEA_LEVEL_DENSITY",
-    "STANDARD_GRAVITY",
-    "Wrench",
-    "body_rates",
-    "euler_rate_matrix",
-    "euler_rates",
-    "horizontal_unit",
-    "rotation_matrix",
-    "safe_norm",
-    "skew",
-    "solve_symmetric",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -4,7 +4,7 @@ import io
 
 from matplotlib.figure import Figure
 
-from tethership.results.seal import RUN
+from tethership.results import RUN
 
 
 def png(drawn: Figure, dpi: int, run: str | None = None) -> bytes:

@@ -1,7 +1,5 @@
 """Linear models: exact derivatives of the motion about a point."""
 
-from tethership.analysis.linear.linearize import linearize
-from tethership.analysis.linear.model import LinearModel
-from tethership.analysis.linear.semi_analytic import SemiAnalytic, semi_analytic
+import lazy_loader
 
-__all__ = ["LinearModel", "SemiAnalytic", "linearize", "semi_analytic"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -17,12 +17,9 @@ from jaxtyping import Array, Float
 
 from tethership.analysis.linear.model import LinearModel
 from tethership.control import AbstractLaw
-from tethership.physics.gust import WindChange
-from tethership.plant import ClosedLoop, Command, State, TetheredAirship
-from tethership.plant.layout import closed_loop
-from tethership.plant.names import HELD, LENGTH, NEXT
-from tethership.scenario import Scenario
-from tethership.scenario.build_loop import build_loop
+from tethership.physics import WindChange
+from tethership.plant import HELD, LENGTH, NEXT, ClosedLoop, Command, State, TetheredAirship, closed_loop
+from tethership.scenario import Scenario, build_loop
 
 MOVING = 1e-6
 """Rate of a ship's state [SI per second] from which its laws are told not to let it rest at the point."""

@@ -20,12 +20,22 @@ from tethership.analysis.linear.semi_analytic import semi_analytic
 from tethership.analysis.trim.trim import TrimOutcome, TrimPoint
 from tethership.control import AbstractLaw
 from tethership.errors import ConfigError, suggestion
-from tethership.plant import Command, State, TetheredAirship
-from tethership.plant.balance import DRIFT_LIMIT, drift, left_over, residual_limit
-from tethership.plant.layout import open_loop, open_state
-from tethership.plant.names import LENGTH, REWIND_RATE, WIND_INPUTS
-from tethership.plant.ship import mass_matrix
-from tethership.plant.state import STATE_NAMES
+from tethership.plant import (
+    DRIFT_LIMIT,
+    LENGTH,
+    REWIND_RATE,
+    STATE_NAMES,
+    WIND_INPUTS,
+    Command,
+    State,
+    TetheredAirship,
+    drift,
+    left_over,
+    mass_matrix,
+    open_loop,
+    open_state,
+    residual_limit,
+)
 from tethership.scenario import Scenario
 from tethership.spatial import rotation_matrix
 

@@ -16,10 +16,8 @@ import xarray as xr
 from tethership._extras import needs
 from tethership._version import __version__
 from tethership.errors import ConfigError, suggestion
-from tethership.plant.names import LENGTH, WIND_INPUTS
-from tethership.results import netcdf
-from tethership.results.schema import FORMAT, LINEAR_MODEL
-from tethership.results.seal import run_id
+from tethership.plant import LENGTH, WIND_INPUTS
+from tethership.results import FORMAT, LINEAR_MODEL, netcdf, run_id
 
 if TYPE_CHECKING:
     import control

@@ -14,9 +14,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from tethership.analysis.linear.right_side import unpack_inputs
-from tethership.plant import TetheredAirship
-from tethership.plant.layout import split_open
-from tethership.plant.plant import reading_names
+from tethership.plant import TetheredAirship, reading_names, split_open
 from tethership.spatial import rotation_matrix, safe_norm
 
 OF_SHIP = ("airspeed", "angle_of_attack", "sideslip", "rate_of_climb", "clearance")

@@ -11,9 +11,8 @@ import dataclasses
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from tethership.physics.gust import WindChange
-from tethership.plant import Command, TetheredAirship
-from tethership.plant.layout import split_open
+from tethership.physics import WindChange
+from tethership.plant import Command, TetheredAirship, split_open
 from tethership.spatial import Wrench
 
 WIND_UNITS = ("m/s", "m/s", "m/s", "m/s^2", "m/s^2", "m/s^2")

@@ -18,8 +18,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from tethership.analysis.linear.right_side import loads
-from tethership.plant import State, TetheredAirship
-from tethership.plant.ship import mass_matrix
+from tethership.plant import State, TetheredAirship, mass_matrix
 from tethership.spatial import euler_rate_matrix, rotation_matrix, skew
 
 GROUPS = {

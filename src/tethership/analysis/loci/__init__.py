@@ -1,6 +1,5 @@
 """Root loci and sensitivities: how trim and modes move with the numbers of a scenario."""
 
-from tethership.analysis.loci.sensitivity import Sensitivities, Sensitivity, sensitivities
-from tethership.analysis.loci.sweep import Happening, Sweep, sweep
+import lazy_loader
 
-__all__ = ["Happening", "Sensitivities", "Sensitivity", "Sweep", "sensitivities", "sweep"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

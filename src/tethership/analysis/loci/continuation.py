@@ -21,12 +21,8 @@ from tethership.analysis.linear.linearize import comparable_coordinates
 from tethership.analysis.linear.right_side import input_vector, right_side
 from tethership.analysis.trim.problem import Question, pose
 from tethership.analysis.trim.solve import EFFORT, Problem, described
-from tethership.plant.balance import DRIFT_LIMIT, residual_limit
-from tethership.plant.layout import open_state
-from tethership.scenario import ScenarioConfig
-from tethership.scenario.build import build_system
-from tethership.scenario.build_loop import build_loop
-from tethership.scenario.parameters import with_values
+from tethership.plant import DRIFT_LIMIT, open_state, residual_limit
+from tethership.scenario import ScenarioConfig, build_loop, build_system, with_values
 
 BATCH = 128
 """Points of one compiled call: fixed, so that every sweep runs the same program."""

@@ -7,8 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from tethership.errors import ConfigError
-from tethership.scenario import Scenario
-from tethership.scenario.parameters import Parameter, check_values, find_parameter, list_parameters
+from tethership.scenario import Parameter, Scenario, check_values, find_parameter, list_parameters
 
 Axis = Mapping[str, Sequence[float] | np.ndarray]
 """Parameters moved together along one axis: name → values [SI]."""

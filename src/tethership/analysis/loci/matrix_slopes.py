@@ -16,10 +16,8 @@ from tethership.analysis.trim.problem import Question, ask, pose, posed
 from tethership.analysis.trim.solve import Problem
 from tethership.analysis.trim.trim import TrimPoint
 from tethership.errors import ConfigError
-from tethership.plant.layout import open_state
-from tethership.scenario import Scenario, ScenarioConfig
-from tethership.scenario.build import build_system
-from tethership.scenario.parameters import Parameter, with_values
+from tethership.plant import open_state
+from tethership.scenario import Parameter, Scenario, ScenarioConfig, build_system, with_values
 from tethership.spatial import rotation_matrix
 
 COEFFICIENTS = "vehicle.hull.coefficients."

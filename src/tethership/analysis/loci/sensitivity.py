@@ -25,8 +25,7 @@ from tethership.analysis.modes.modes import find_modes
 from tethership.analysis.modes.spectrum import Spectrum, analyse
 from tethership.analysis.trim.trim import TrimOutcome, TrimPoint, trim
 from tethership.errors import SolveError
-from tethership.scenario import Scenario, ScenarioConfig
-from tethership.scenario.parameters import Parameter, list_parameters
+from tethership.scenario import Parameter, Scenario, ScenarioConfig, list_parameters
 
 TABLES = ("vehicle.", "atmosphere.", "wind.", "ground.", "cables.", "trim.")
 """Parts of a scenario on which a trim and its linear model depend."""

@@ -32,12 +32,8 @@ from tethership.analysis.trim.outcome import Points, TrimOutcome, outcomes
 from tethership.analysis.trim.problem import Question, ask
 from tethership.analysis.trim.trim import solved
 from tethership.errors import ConfigError, TethershipError, suggestion
-from tethership.plant import Command
-from tethership.plant.layout import closed_loop, open_loop
-from tethership.plant.state import STATE_NAMES
-from tethership.scenario import Scenario
-from tethership.scenario.build_loop import build_loop
-from tethership.scenario.parameters import Parameter, find_parameter, list_parameters, scenario_at
+from tethership.plant import STATE_NAMES, Command, closed_loop, open_loop
+from tethership.scenario import Parameter, Scenario, build_loop, find_parameter, list_parameters, scenario_at
 
 FINE = 160
 """Points along a line between which eigenvectors are compared: coarser sweeps are filled up to as many."""

@@ -4,7 +4,7 @@ import numpy as np
 
 from tethership.analysis.loci.sweep import Sweep
 from tethership.analysis.trim.outcome import UNDER_GROUND
-from tethership.results.limits import HARMFUL
+from tethership.results import HARMFUL
 
 
 def sweep_warnings(found: Sweep) -> list[str]:

@@ -1,5 +1,5 @@
 """Modes: eigenvalues by name."""
 
-from tethership.analysis.modes.modes import Mode, Modes
+import lazy_loader
 
-__all__ = ["Mode", "Modes"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

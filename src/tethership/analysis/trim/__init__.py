@@ -1,6 +1,5 @@
 """Equilibria: the problem, its solution and what is to be known of it."""
 
-from tethership.analysis.trim.outcome import TrimOutcome
-from tethership.analysis.trim.trim import TrimPoint, trim
+import lazy_loader
 
-__all__ = ["TrimOutcome", "TrimPoint", "trim"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -10,8 +10,8 @@ import numpy as np
 
 from tethership.analysis.trim.outcome import UNDER_GROUND, Points, TrimOutcome, outcomes
 from tethership.analysis.trim.solve import Described
-from tethership.plant.balance import left_over
-from tethership.results.limits import HARMFUL, ratios_passed
+from tethership.plant import left_over
+from tethership.results import HARMFUL, ratios_passed
 from tethership.scenario import Scenario, ScenarioConfig
 
 STIFF_LINK = 1e5

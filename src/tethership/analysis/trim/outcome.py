@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tethership.plant.balance import DRIFT_LIMIT
+from tethership.plant import DRIFT_LIMIT
 
 UNDER_GROUND = 1e-3
 """How far below the ground counts as below it [m]: less is the rounding of a search."""

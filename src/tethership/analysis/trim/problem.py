@@ -16,8 +16,7 @@ from tethership.analysis.trim.solve import Problem
 from tethership.analysis.trim.unknowns import DOWN, Unknowns, find_places, find_unknowns
 from tethership.errors import ConfigError
 from tethership.plant import TetheredAirship
-from tethership.scenario import Scenario, ScenarioConfig
-from tethership.scenario.schema import TrimConfig
+from tethership.scenario import Scenario, ScenarioConfig, TrimConfig
 from tethership.spatial import rotation_matrix, safe_norm
 
 

@@ -15,9 +15,7 @@ import scipy.optimize
 from jaxtyping import Array, Float
 
 from tethership.analysis.trim.unknowns import Unknowns
-from tethership.plant import Command, State, TetheredAirship
-from tethership.plant.balance import RESIDUAL_LIMIT, drift, residual
-from tethership.plant.cable import end_tension
+from tethership.plant import RESIDUAL_LIMIT, Command, State, TetheredAirship, drift, end_tension, residual
 from tethership.spatial import STANDARD_GRAVITY, body_rates, rotation_matrix, safe_norm
 
 EFFORT = 1e-3

@@ -12,8 +12,7 @@ from tethership.analysis.trim.outcome import TrimOutcome
 from tethership.analysis.trim.problem import Question, ask, posed
 from tethership.analysis.trim.solve import described, solve
 from tethership.errors import SolveError
-from tethership.plant import Command, State
-from tethership.plant.balance import residual_limit
+from tethership.plant import Command, State, residual_limit
 from tethership.scenario import Scenario
 
 __all__ = ["TrimOutcome", "TrimPoint", "solved", "trim"]

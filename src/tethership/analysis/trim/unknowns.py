@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from tethership.errors import ConfigError, suggestion
-from tethership.plant.names import ALL_FINS, ALL_THRUSTERS, QUANTITIES
+from tethership.plant import ALL_FINS, ALL_THRUSTERS, QUANTITIES
 
 DOWN = QUANTITIES.index("down")
 """Place of the height."""

@@ -1,5 +1,5 @@
 """A measured wind's file: its columns, names, units, times and gaps, up to one record. Depends on: errors, xarray."""
 
-from tethership.scenario.wind_record.record import Record, read_record
+import lazy_loader
 
-__all__ = ["Record", "read_record"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -4,9 +4,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tethership.analysis.loci.sweep import Sweep
-from tethership.analysis.modes.modes import Mode, Modes
-from tethership.analysis.modes.spectrum import Complex, Real
+from tethership.analysis.loci import Sweep
+from tethership.analysis.modes import Complex, Mode, Modes, Real
 
 
 class Claim(NamedTuple):

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from tethership.simulation.flight import Flight
+from tethership.simulation import Flight
 from tethership.studies.docking_paper.claim import Claim
 from tethership.studies.docking_paper.fit.targets import TABLES
 from tethership.studies.docking_paper.flights_read import (

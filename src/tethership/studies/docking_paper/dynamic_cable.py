@@ -21,8 +21,8 @@ from scipy.interpolate import CubicHermiteSpline
 
 from tethership.errors import ConfigError, SolveError
 from tethership.plant import Cable
-from tethership.scenario.load import from_document
-from tethership.simulation.flight import Flight
+from tethership.scenario import from_document
+from tethership.simulation import Flight
 from tethership.spatial import rotation_matrix
 from tethership.studies.docking_paper.moordyn_line import LineProperties, MoorDynLine, Vector
 

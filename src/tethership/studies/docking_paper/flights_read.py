@@ -9,8 +9,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from tethership.simulation.flight import Flight
-from tethership.simulation.outcome import Outcome
+from tethership.simulation import Flight, Outcome
 from tethership.studies.docking_paper.fit.targets import TABLES
 
 T = TypeVar("T")

@@ -17,9 +17,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tethership.campaign.execute import fresh_processes
-from tethership.results.files import write_atomically
-from tethership.results.seal import is_whole, sealed
+from tethership.campaign import fresh_processes
+from tethership.results import is_whole, sealed, write_atomically
 
 WORKERS = 2
 """Processes at most."""

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tethership.simulation import Flight
-from tethership.simulation.quasi_static import outside
+from tethership.simulation import Flight, outside
 from tethership.studies.docking_paper.dynamic_cable import dynamic_line
 from tethership.studies.docking_paper.flights_read import CONTROL_THRESHOLD
 

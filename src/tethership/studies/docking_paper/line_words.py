@@ -5,7 +5,7 @@ Depends on: simulation.quasi_static.
 
 from typing import Any
 
-from tethership.simulation.quasi_static import MEMORY, TRUSTED
+from tethership.simulation import MEMORY, TRUSTED
 
 WELL = 0.1
 """Largest median difference of a cable that may be trusted [-]."""

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from tethership.analysis.linear.linearize import linearize
-from tethership.analysis.loci.sweep import Sweep, sweep
-from tethership.analysis.trim.trim import TrimOutcome, trim
+from tethership.analysis.linear import linearize
+from tethership.analysis.loci import Sweep, sweep
+from tethership.analysis.trim import TrimOutcome, trim
 from tethership.errors import ConfigError, suggestion
 from tethership.scenario import load_scenario
 from tethership.studies.docking_paper.claim import (

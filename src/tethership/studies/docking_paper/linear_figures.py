@@ -9,14 +9,13 @@ from typing import Any, NamedTuple
 import jax.numpy as jnp
 import numpy as np
 
-from tethership.analysis.linear.linearize import linearize
-from tethership.analysis.loci.sweep import sweep
-from tethership.analysis.modes.modes import Modes
-from tethership.analysis.trim.trim import trim
+from tethership.analysis.linear import linearize
+from tethership.analysis.loci import sweep
+from tethership.analysis.modes import Modes
+from tethership.analysis.trim import trim
 from tethership.errors import ConfigError
-from tethership.scenario import Scenario, load_scenario
-from tethership.scenario.build import build_hull
-from tethership.view.linear.panel import Panel
+from tethership.scenario import Scenario, build_hull, load_scenario
+from tethership.view.linear import Panel
 
 TETHER_POINT = 0.8 * 20.0 * np.array([-np.sqrt(0.5), 0.0, -np.sqrt(0.5)])
 """Where the tether point is trimmed, ground axes [m] (section 3)."""

@@ -28,7 +28,7 @@ from tethership.studies.docking_paper.moordyn_line import load_moordyn
 from tethership.studies.docking_paper.tables import compare, paper_tables
 from tethership.studies.docking_paper.terms import load_breakdown, switch_off
 from tethership.studies.docking_paper.uncertainty import uncertainty
-from tethership.tuning.tune import GAINS, judge
+from tethership.tuning import GAINS, judge
 
 GROUND_EFFECT = 0.01
 """Coefficient of the ground effect of claim D7 [1/m], vertical wind per ground speed and height: not published."""

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tethership.simulation.flight import Flight
+from tethership.simulation import Flight
 from tethership.studies.docking_paper.claim import Claim
 from tethership.studies.docking_paper.fit.targets import TABLES, published_rows
 from tethership.studies.docking_paper.flights_read import (

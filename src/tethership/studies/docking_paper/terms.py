@@ -15,14 +15,11 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from tethership.analysis import TrimOutcome, trim
-from tethership.campaign.flights import SWITCHES, layer_switches
+from tethership.campaign import SWITCHES, layer_switches
 from tethership.errors import ConfigError, SolveError, suggestion
-from tethership.physics.apparent_mass import AbstractApparentMass
-from tethership.physics.atmosphere import AbstractAtmosphere
-from tethership.physics.envelope import AbstractEnvelope
-from tethership.results.metrics import mean
-from tethership.scenario import Scenario, list_parameters, scenario_at
-from tethership.scenario.control_schema import check_layers
+from tethership.physics import AbstractApparentMass, AbstractAtmosphere, AbstractEnvelope
+from tethership.results import mean
+from tethership.scenario import Scenario, check_layers, list_parameters, scenario_at
 from tethership.simulation import Flight, dock
 from tethership.spatial import Wrench
 

@@ -9,8 +9,7 @@ import numpy as np
 
 from tethership.campaign import Cases, fly_blocks, layer_switches, perturbed
 from tethership.scenario import Scenario
-from tethership.simulation import Outcome
-from tethership.simulation.batch import CODES
+from tethership.simulation import CODES, Outcome
 from tethership.studies.docking_paper.fit.space import named_values
 from tethership.studies.docking_paper.fit.targets import TABLES
 from tethership.studies.docking_paper.tables import THRESHOLDS, held_out, published_numbers

@@ -9,11 +9,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tethership.campaign.answers import failed, outcomes
-from tethership.campaign.plan import Plan
-from tethership.campaign.store import CURE
-from tethership.campaign.work import COMPARED
-from tethership.results.files import write_atomically
+from tethership.campaign import COMPARED, CURE, Plan, failed, outcomes
+from tethership.results import write_atomically
 
 KEPT = (*COMPARED, "quasi_static_outside", "snap_impulse")
 """Metrics of every flight."""

@@ -3,10 +3,7 @@
 import numpy as np
 from matplotlib.axes import Axes
 
-from tethership.campaign import Campaign
-from tethership.campaign.answers import exceeded
-from tethership.campaign.plan import Plan
-from tethership.campaign.probability import running
+from tethership.campaign import Campaign, Plan, exceeded, running
 from tethership.errors import ConfigError, suggestion
 from tethership.view.campaign import figures
 

@@ -9,12 +9,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from tethership.campaign import Campaign
-from tethership.campaign.answers import exceeded
-from tethership.campaign.plan import Plan
-from tethership.campaign.store import CURE
-from tethership.results.files import write_atomically
-from tethership.results.metric_names import NAMES
+from tethership.campaign import CURE, Campaign, Plan, exceeded
+from tethership.results import NAMES, write_atomically
 from tethership.view.campaign import figures
 from tethership.view.campaign.csv import write_exceedance, write_flights
 from tethership.view.campaign.plot import plot_campaign

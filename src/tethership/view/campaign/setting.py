@@ -5,11 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from tethership.campaign.answers import limit_values
-from tethership.campaign.distributions import Distribution
-from tethership.campaign.plan import Plan
+from tethership.campaign import Distribution, Plan, limit_values
 from tethership.scenario import list_parameters
-from tethership.simulation.cable_pace import MEMORY, TRUSTED
+from tethership.simulation import MEMORY, TRUSTED
 from tethership.view.flight.captions import compass, percent, percents, trust
 from tethership.view.report.report import Section, Table
 

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tethership.scenario import ScenarioConfig
-from tethership.scenario.wind_schema import GustConfig
+from tethership.scenario import GustConfig, ScenarioConfig
 
 POINTS = ("N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW")
 """Points of the compass."""

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from tethership.errors import ConfigError, SolveError, suggestion
-from tethership.results.schema import BODY
+from tethership.results import BODY
 from tethership.simulation import Flight
 from tethership.view import style
 

@@ -8,10 +8,8 @@ import numpy as np
 from jaxtyping import Float
 from numpy.typing import NDArray
 
-from tethership.physics.hull import BodyOfRevolution
-from tethership.scenario import VehicleConfig
-from tethership.scenario.build import build_hull
-from tethership.scenario.vehicle_schema import FinConfig
+from tethership.physics import BodyOfRevolution
+from tethership.scenario import FinConfig, VehicleConfig, build_hull
 from tethership.view.flight.projection import View
 
 Array = NDArray[np.float64]

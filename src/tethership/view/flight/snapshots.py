@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tethership.errors import SolveError
-from tethership.scenario import ScenarioConfig
-from tethership.scenario.build_air import ground_level
+from tethership.scenario import ScenarioConfig, ground_level
 from tethership.simulation import Flight
 from tethership.spatial import rotation_matrix
 from tethership.view.flight.ship import ShipShape, ship_shape

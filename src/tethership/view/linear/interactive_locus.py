@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from tethership._extras import needs
-from tethership.analysis.loci.sweep import Sweep
-from tethership.analysis.modes.spectrum import Complex
+from tethership.analysis.loci import Sweep
+from tethership.analysis.modes import Complex
 from tethership.view import style
 from tethership.view.linear.mode_names import mode_names
 from tethership.view.linear.panel import Panel

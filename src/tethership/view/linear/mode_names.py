@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from tethership.analysis.modes.spectrum import Complex
+from tethership.analysis.modes import Complex
 from tethership.view import style
 
 SHIFTS = (14, -15, 28, -29, 42, -43)

@@ -9,11 +9,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
-from tethership.analysis.linear.model import LinearModel
-from tethership.analysis.modes.modes import Mode
+from tethership.analysis.linear import LinearModel
+from tethership.analysis.modes import Mode
 from tethership.errors import ConfigError
-from tethership.scenario import ScenarioConfig
-from tethership.scenario.load import validated
+from tethership.scenario import ScenarioConfig, validated
 from tethership.spatial import rotation_matrix
 from tethership.view import style
 from tethership.view.flight.projection import View

@@ -9,13 +9,10 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from tethership.analysis.loci.sweep import Sweep
-from tethership.analysis.loci.tracking import partners_of
-from tethership.analysis.modes.modes import Modes
-from tethership.analysis.modes.spectrum import Complex
+from tethership.analysis.loci import Sweep, partners_of
+from tethership.analysis.modes import Complex, Modes
 from tethership.errors import ConfigError
-from tethership.scenario import list_parameters
-from tethership.scenario.parameters import ALIASES
+from tethership.scenario import ALIASES, list_parameters
 from tethership.view import style
 from tethership.view.linear.panel import Panel
 

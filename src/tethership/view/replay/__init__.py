@@ -1,5 +1,5 @@
 """A flight replayed in a browser: one self-contained page with the ship in space and its histories."""
 
-from tethership.view.replay.page import replay_text, write_replay
+import lazy_loader
 
-__all__ = ["replay_text", "write_replay"]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -15,11 +15,8 @@ from jaxtyping import Float
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from tethership.physics.thrusters import Thrusters
-from tethership.physics.wind import AbstractWind
-from tethership.scenario import ScenarioConfig
-from tethership.scenario.build_air import build_wind, ground_level
-from tethership.scenario.build_ship import build_thrusters
+from tethership.physics import AbstractWind, Thrusters
+from tethership.scenario import ScenarioConfig, build_thrusters, build_wind, ground_level
 
 Array = NDArray[np.float64]
 

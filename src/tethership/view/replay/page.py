@@ -10,7 +10,7 @@ from typing import Any
 
 from tethership._version import __version__
 from tethership.errors import ConfigError
-from tethership.results.seal import RUN
+from tethership.results import RUN
 from tethership.simulation import Flight
 from tethership.view import style
 from tethership.view.replay.scene import scene

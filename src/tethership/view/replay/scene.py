@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from tethership.errors import SolveError
-from tethership.scenario import ScenarioConfig
-from tethership.scenario.build_air import ground_level
+from tethership.scenario import ScenarioConfig, ground_level
 from tethership.simulation import Flight
 from tethership.view.flight.captions import compass, flown_words
 from tethership.view.flight.hull_mesh import ship_mesh

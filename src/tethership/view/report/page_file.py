@@ -12,7 +12,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from tethership._version import __version__
-from tethership.results.files import write_atomically
+from tethership.results import write_atomically
 
 
 def page_text(folder: str, name: str) -> str:

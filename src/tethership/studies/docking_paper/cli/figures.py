@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from tethership.cli.progress import stage
 from tethership.cli.sweep import summary
-from tethership.results.files import write_together
+from tethership.results import write_together
 from tethership.studies.docking_paper import linear_figure
 
 if TYPE_CHECKING:
@@ -17,8 +17,8 @@ def figures(
 ) -> tuple[dict[str, Any], list["Sweep"]]:
     """Return one figure of the paper in one formulation or both; writes figure_NN_FORMULATION.png and .html."""
     from tethership.studies.docking_paper.view.linear_figures import interactive_linear_figure, plot_linear_figure
-    from tethership.view.linear.interactive_locus import page
-    from tethership.view.picture import png
+    from tethership.view import png
+    from tethership.view.linear import page
 
     files, shown, sweeps = [], {}, []
     chosen = formulation or changes.get("formulation")

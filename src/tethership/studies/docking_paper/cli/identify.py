@@ -18,7 +18,7 @@ from tethership.cli.progress import progress_bar
 from tethership.cli.result import Result, show
 from tethership.cli.tables import CsvOption, Row, Table
 from tethership.errors import ConfigError
-from tethership.results.files import write_together
+from tethership.results import write_together
 
 EXAMPLE = "Example: tethership identify --formulation published --out fit"
 
@@ -78,7 +78,7 @@ def identify(
 
 def _check(scenario: Any) -> None:
     """Raise ConfigError where a scenario is not the paper's docking."""
-    from tethership.scenario.control_schema import LAYERS
+    from tethership.scenario import LAYERS
     from tethership.studies.docking_paper.fit.space import THRUSTERS
 
     config = scenario.config
@@ -109,7 +109,7 @@ def vehicle_of(document: dict[str, Any]) -> str:
     """Return the vehicle file of a fit."""
     import numpy as np
 
-    from tethership.scenario.load import packaged_text
+    from tethership.scenario import packaged_text
     from tethership.studies.docking_paper.fit.vehicle_file import vehicle_text
 
     name = f"lotte_identified_{document['formulation']}"

@@ -12,8 +12,7 @@ from tethership.cli.progress import progress_bar
 from tethership.cli.result import Result, show
 from tethership.cli.tables import CsvOption, Table
 from tethership.errors import ConfigError, suggestion
-from tethership.results.files import write_atomically
-from tethership.results.lock import held
+from tethership.results import held, write_atomically
 
 if TYPE_CHECKING:
     from tethership.studies.docking_paper.jobs import Job, Settings

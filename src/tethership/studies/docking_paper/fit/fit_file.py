@@ -11,11 +11,11 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from tethership._version import __version__
 from tethership.errors import ConfigError, TethershipWarning
-from tethership.results.seal import CHECKSUM, is_whole, sealed
+from tethership.results import CHECKSUM, is_whole, sealed
 from tethership.studies.docking_paper.fit.identify import Budget, Identification, at_bounds
 from tethership.studies.docking_paper.fit.space import UNKNOWNS
 from tethership.studies.docking_paper.fit.spectrum import PARTS, unmet
-from tethership.tuning.search import NEARLY
+from tethership.tuning import NEARLY
 
 FORMULATIONS = ("published", "consistent")
 """Formulations that are fitted."""

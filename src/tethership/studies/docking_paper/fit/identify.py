@@ -16,7 +16,7 @@ from tethership.studies.docking_paper.fit.misfit import Item, fly_rows, items, r
 from tethership.studies.docking_paper.fit.space import UNKNOWNS, to_shares, to_values
 from tethership.studies.docking_paper.fit.spectrum import Spectrum
 from tethership.studies.docking_paper.fit.targets import TABLES, Row, fitted_rows
-from tethership.tuning.search import Archive, Slopes, evolve, misfit, refine, sobol, spread
+from tethership.tuning import Archive, Slopes, evolve, misfit, refine, sobol, spread
 
 NUDGE = 1.01
 """Factor on the initial attitude by which sensitivity is judged."""

@@ -13,8 +13,7 @@ import numpy as np
 
 from tethership.campaign import Cases, fly_blocks, layer_switches
 from tethership.scenario import Scenario
-from tethership.simulation import Outcome
-from tethership.simulation.batch import CODES
+from tethership.simulation import CODES, Outcome
 from tethership.studies.docking_paper.fit.space import named_values
 from tethership.studies.docking_paper.fit.targets import Row, fitted_rows
 

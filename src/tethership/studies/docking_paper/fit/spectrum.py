@@ -14,15 +14,10 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from tethership.analysis.linear.linearize import comparable_coordinates, linearize
-from tethership.analysis.linear.right_side import input_vector, right_side
-from tethership.analysis.loci.continuation import nearby_equilibrium
-from tethership.analysis.loci.matrix_slopes import matrix_slopes
-from tethership.analysis.trim.problem import Question, ask, pose
-from tethership.analysis.trim.trim import trim
-from tethership.scenario import ScenarioConfig, list_parameters, load_scenario, scenario_at
-from tethership.scenario.build import build_system
-from tethership.scenario.parameters import with_values
+from tethership.analysis.linear import comparable_coordinates, input_vector, linearize, right_side
+from tethership.analysis.loci import matrix_slopes, nearby_equilibrium
+from tethership.analysis.trim import Question, ask, pose, trim
+from tethership.scenario import ScenarioConfig, build_system, list_parameters, load_scenario, scenario_at, with_values
 from tethership.studies.docking_paper.fit.space import UNKNOWNS, named_values
 
 LATERAL = np.array([1, 3, 5, 6])

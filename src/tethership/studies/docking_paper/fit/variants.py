@@ -16,7 +16,7 @@ from tethership.studies.docking_paper.fit.misfit import Item, fly_rows, items, r
 from tethership.studies.docking_paper.fit.space import to_shares, to_values
 from tethership.studies.docking_paper.fit.spectrum import Spectrum
 from tethership.studies.docking_paper.fit.targets import fitted_rows
-from tethership.tuning.search import Archive, evolve, misfit
+from tethership.tuning import Archive, evolve, misfit
 
 PRINTED_SHARE = 2.2675
 """½ q_T2x/q_T3x of Eq. 40 with the sign of the print: #3, #4 then cancel the moment of #2 [-]."""

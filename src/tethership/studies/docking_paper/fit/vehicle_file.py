@@ -10,7 +10,7 @@ import tomlkit
 
 from tethership.errors import ConfigError
 from tethership.studies.docking_paper.fit.space import UNKNOWNS
-from tethership.tuning.scenario_file import set_quantity
+from tethership.tuning import set_quantity
 
 
 def vehicle_text(template: str, values: np.ndarray, name: str, description: str, source: str) -> str:

@@ -13,9 +13,7 @@ from numpy.typing import NDArray
 from tethership.simulation import Flight
 from tethership.studies.docking_paper.terms import load_breakdown
 from tethership.view import style
-from tethership.view.flight.loads import DECADES, KINDS, load_vectors
-from tethership.view.flight.ship_key import key_row
-from tethership.view.flight.snapshots import Snapshots, take_snapshots
+from tethership.view.flight import DECADES, KINDS, Snapshots, key_row, load_vectors, take_snapshots
 
 Array = NDArray[np.float64]
 

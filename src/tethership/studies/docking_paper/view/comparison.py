@@ -13,14 +13,11 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from tethership.errors import ConfigError
-from tethership.results.limits import HARMFUL
+from tethership.results import HARMFUL
 from tethership.simulation import Flight
 from tethership.studies.docking_paper.view.ground_box import GroundBox, box_around, draw_box
 from tethership.view import style
-from tethership.view.flight.projection import View
-from tethership.view.flight.ship import ship_outlines
-from tethership.view.flight.ship_key import key_row, ship_keys
-from tethership.view.flight.snapshots import Snapshots, snapshot_indices, take_snapshots
+from tethership.view.flight import Snapshots, View, key_row, ship_keys, ship_outlines, snapshot_indices, take_snapshots
 
 Array = NDArray[np.float64]
 

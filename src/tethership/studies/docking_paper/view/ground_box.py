@@ -9,7 +9,7 @@ from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
 from tethership.view import style
-from tethership.view.flight.projection import View
+from tethership.view.flight import View
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from matplotlib.figure import Figure
 
 from tethership.studies.docking_paper.linear_figures import LinearFigure
-from tethership.view.linear.root_locus import plot_panels
+from tethership.view.linear import plot_panels
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -22,7 +22,7 @@ def plot_linear_figure(figure: LinearFigure) -> Figure:
 
 def interactive_linear_figure(figure: LinearFigure) -> "go.Figure":
     """Return one of Figures 6–11 of the paper as a plotly figure, Re λ [1/s] across, Im λ [rad/s] up."""
-    from tethership.view.linear.interactive_locus import interactive_panels
+    from tethership.view.linear import interactive_panels
 
     title = f"Figure {figure.number} of the paper, computed: {figure.title} · {figure.formulation} formulation"
     return interactive_panels(figure.panels, title)

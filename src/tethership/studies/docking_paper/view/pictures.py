@@ -9,7 +9,7 @@ from typing import Any
 import matplotlib.figure
 
 from tethership._extras import needs
-from tethership.results.files import write_atomically, write_together
+from tethership.results import write_atomically, write_together
 from tethership.simulation import Flight
 from tethership.studies.docking_paper import FIGURES, linear_figure
 from tethership.studies.docking_paper.fit.fit_file import stored_fit
@@ -21,9 +21,8 @@ from tethership.studies.docking_paper.view.comparison import plot_comparison
 from tethership.studies.docking_paper.view.fit_figures import plot_correlation, plot_marginals, plot_residuals
 from tethership.studies.docking_paper.view.line_figures import plot_line_comparison
 from tethership.studies.docking_paper.view.linear_figures import interactive_linear_figure, plot_linear_figure
-from tethership.view.flight.docking import plot_docking
-from tethership.view.flight.interactive_histories import interactive_histories
-from tethership.view.picture import png
+from tethership.view import png
+from tethership.view.flight import interactive_histories, plot_docking
 from tethership.view.replay import write_replay
 
 with needs("plots"):

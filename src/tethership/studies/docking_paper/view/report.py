@@ -15,7 +15,7 @@ from tethership.studies.docking_paper.misprints import MISPRINTS
 from tethership.studies.docking_paper.tables import counts
 from tethership.studies.docking_paper.view import report_tables as tables
 from tethership.studies.docking_paper.view.pictures import DOCKING_FIGURES, LAYER_WORDS
-from tethership.view.report.report import Figure, Section, write_report
+from tethership.view.report import Figure, Section, write_report
 
 with needs("plots"):
     import plotly.io

@@ -6,8 +6,8 @@ Every number comes from the data it is given; nothing is computed here.
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from tethership.results.metric_names import NAMES
-from tethership.view.report.content import Table
+from tethership.results import NAMES
+from tethership.view.report import Table
 
 LAYERS = {"rewind": "rewind", "heading": "+ heading", "navigation": "+ navigation"}
 """Layers in words."""

@@ -1,0 +1,15 @@
+from .linear.linearize import linearize as linearize
+from .linear.model import LinearModel as LinearModel
+from .linear.semi_analytic import SemiAnalytic as SemiAnalytic
+from .linear.semi_analytic import semi_analytic as semi_analytic
+from .loci.sensitivity import Sensitivities as Sensitivities
+from .loci.sensitivity import Sensitivity as Sensitivity
+from .loci.sensitivity import sensitivities as sensitivities
+from .loci.sweep import Happening as Happening
+from .loci.sweep import Sweep as Sweep
+from .loci.sweep import sweep as sweep
+from .modes.modes import Mode as Mode
+from .modes.modes import Modes as Modes
+from .trim.trim import TrimOutcome as TrimOutcome
+from .trim.trim import TrimPoint as TrimPoint
+from .trim.trim import trim as trim

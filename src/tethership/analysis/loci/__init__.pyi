@@ -1,0 +1,11 @@
+from .continuation import nearby_equilibrium as nearby_equilibrium
+from .grid import MOST_POINTS as MOST_POINTS
+from .matrix_slopes import matrix_slopes as matrix_slopes
+from .sensitivity import Sensitivities as Sensitivities
+from .sensitivity import Sensitivity as Sensitivity
+from .sensitivity import sensitivities as sensitivities
+from .sweep import Happening as Happening
+from .sweep import Sweep as Sweep
+from .sweep import sweep as sweep
+from .sweep_warnings import sweep_warnings as sweep_warnings
+from .tracking import partners_of as partners_of

@@ -1,0 +1,4 @@
+from .modes import Mode as Mode
+from .modes import Modes as Modes
+from .spectrum import Complex as Complex
+from .spectrum import Real as Real

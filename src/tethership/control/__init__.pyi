@@ -1,0 +1,16 @@
+from .attitude import AttitudeLaw as AttitudeLaw
+from .heading import HeadingLaw as HeadingLaw
+from .heading import LineHeadingLaw as LineHeadingLaw
+from .heading import SineHeadingLaw as SineHeadingLaw
+from .heading import misalignment as misalignment
+from .law import AbstractLaw as AbstractLaw
+from .law import Asked as Asked
+from .law import Correction as Correction
+from .law import Measurement as Measurement
+from .law import Request as Request
+from .layers import LayeredLaw as LayeredLaw
+from .navigation import LineOfSightNavigationLaw as LineOfSightNavigationLaw
+from .navigation import NavigationLaw as NavigationLaw
+from .rewind import RewindLaw as RewindLaw
+from .sampling import Held as Held
+from .sampling import Sampling as Sampling

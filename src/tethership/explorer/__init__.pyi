@@ -1,0 +1,2 @@
+from .server import Explorer as Explorer
+from .server import serve_until_signal as serve_until_signal

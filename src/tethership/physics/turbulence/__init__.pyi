@@ -1,0 +1,12 @@
+from .fluctuation import AbstractFluctuation as AbstractFluctuation
+from .history import MeasuredHistory as MeasuredHistory
+from .record import INTERVAL as INTERVAL
+from .record import SAMPLES as SAMPLES
+from .record import Turbulence as Turbulence
+from .record import make_turbulence as make_turbulence
+from .spectra import REFERENCE_HEIGHT as REFERENCE_HEIGHT
+from .spectra import SPECTRA as SPECTRA
+from .spectra import Scales as Scales
+from .spectra import dryden1952 as dryden1952
+from .spectra import low_altitude_scales as low_altitude_scales
+from .spectra import von_karman1948 as von_karman1948

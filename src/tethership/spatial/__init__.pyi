@@ -1,0 +1,15 @@
+from .constants import GAS_CONSTANT_AIR as GAS_CONSTANT_AIR
+from .constants import SEA_LEVEL_DENSITY as SEA_LEVEL_DENSITY
+from .constants import SEA_LEVEL_PRESSURE as SEA_LEVEL_PRESSURE
+from .constants import SEA_LEVEL_TEMPERATURE as SEA_LEVEL_TEMPERATURE
+from .constants import STANDARD_GRAVITY as STANDARD_GRAVITY
+from .constants import TEMPERATURE_LAPSE as TEMPERATURE_LAPSE
+from .linear import solve_symmetric as solve_symmetric
+from .rotations import body_rates as body_rates
+from .rotations import euler_rate_matrix as euler_rate_matrix
+from .rotations import euler_rates as euler_rates
+from .rotations import horizontal_unit as horizontal_unit
+from .rotations import rotation_matrix as rotation_matrix
+from .rotations import safe_norm as safe_norm
+from .rotations import skew as skew
+from .wrench import Wrench as Wrench

@@ -1,0 +1,14 @@
+from .scenario_file import retuned_text as retuned_text
+from .scenario_file import set_quantity as set_quantity
+from .search import NEARLY as NEARLY
+from .search import Archive as Archive
+from .search import Slopes as Slopes
+from .search import evolve as evolve
+from .search import misfit as misfit
+from .search import refine as refine
+from .search import sobol as sobol
+from .search import spread as spread
+from .tune import GAINS as GAINS
+from .tune import judge as judge
+from .tune import tune as tune
+from .tune import tuning_document as tuning_document

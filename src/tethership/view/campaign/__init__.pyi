@@ -1,0 +1,2 @@
+from .report import write_campaign as write_campaign
+from .setting import trusted as trusted

@@ -1,0 +1,11 @@
+from .interactive_locus import REFERENCE as REFERENCE
+from .interactive_locus import interactive_panels as interactive_panels
+from .interactive_locus import interactive_root_locus as interactive_root_locus
+from .interactive_locus import page as page
+from .mode_names import ANNOTATION as ANNOTATION
+from .mode_names import mode_names as mode_names
+from .mode_shape import plot_all_modes as plot_all_modes
+from .panel import Panel as Panel
+from .root_locus import SLOWEST as SLOWEST
+from .root_locus import plot_panels as plot_panels
+from .root_locus import plot_root_loci as plot_root_loci
