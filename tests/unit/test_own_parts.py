@@ -329,6 +329,17 @@ def test_what_cannot_be_given_in_python(code):
         scenario.with_parts({"x": code.Push(np.zeros(3), jax.nn.relu)})
 
 
+def test_a_class_of_a_console_or_notebook_is_found():
+    space = {"ts": ts, "jnp": jnp}
+    text = "class Lift(ts.AbstractPart):\n    force: jnp.ndarray\n"
+    text += "    def wrench(self, time, own, seen):\n        return ts.Wrench(self.force, jnp.zeros(3))\n"
+    exec(text, space)
+    scenario = ts.load_scenario("docking", own_parts={"lift": space["Lift"](np.array([0.0, 0.0, -10.0]))})
+    assert total_load(ts.trim(scenario), "lift")[2] == pytest.approx(-10.0)
+    with pytest.raises(ts.ConfigError, match="is no law"):
+        scenario.changed({"control.laws": [{"name": "x", "model": "builtins:Lift"}]}).law()
+
+
 @pytest.fixture
 def command(capsys, monkeypatch):
     def run(*words):

@@ -21,6 +21,9 @@ from tethership.scenario.schema import CableConfig
 
 Own = TypeVar("Own")
 
+_GIVEN: dict[str, type] = {}
+"""Classes given in Python in this process, by `module:Class`: a notebook's or a console's is in no module's file."""
+
 
 def make_law(config: OwnLawConfig) -> AbstractLaw:
     """Return a law of one's own with its numbers; raises ConfigError as `_made`."""
@@ -102,7 +105,9 @@ def as_entry(name: str, part: AbstractPart) -> dict[str, Any]:
                 f"part {name!r}: its field {field.name!r} is no finite number or list of numbers; give one"
             )
         numbers[field.name] = array.tolist()
-    return {"name": name, "model": f"{kind.__module__}:{kind.__qualname__}", "numbers": numbers}
+    model = f"{kind.__module__}:{kind.__qualname__}"
+    _GIVEN[model] = kind
+    return {"name": name, "model": model, "numbers": numbers}
 
 
 def _made(config: OwnCode, what: str, base: type[Own], base_name: str) -> Own:
@@ -126,7 +131,15 @@ def _with_numbers(kind: Any, numbers: dict[str, Any], config: OwnCode, what: str
 
 def _kind(config: OwnCode, what: str, base: type, base_name: str) -> Any:
     """Return the class that an entry names."""
-    module, _, name = config.model.partition(":")
+    kind = _GIVEN.get(config.model) or _imported(config.model, what)
+    if not (isinstance(kind, type) and issubclass(kind, base)):
+        raise ConfigError(f"{what}: {config.model} is no {what.split()[0]}; make it a subclass of {base_name}")
+    return kind
+
+
+def _imported(model: str, what: str) -> Any:
+    """Return what a `module:Class` names."""
+    module, _, name = model.partition(":")
     try:
         found = importlib.import_module(module)
     except Exception as error:
@@ -134,12 +147,9 @@ def _kind(config: OwnCode, what: str, base: type, base_name: str) -> Any:
             f"{what}: {module} cannot be imported ({type(error).__name__}: {error}); it must lie beside "
             "the scenario's file or on Python's path"
         ) from error
-    kind = getattr(found, name, None)
-    if kind is None:
+    if not hasattr(found, name):
         raise ConfigError(f"{what}: {module} has no {name!r}{suggestion(name, dir(found))}")
-    if not (isinstance(kind, type) and issubclass(kind, base)):
-        raise ConfigError(f"{what}: {config.model} is no {what.split()[0]}; make it a subclass of {base_name}")
-    return kind
+    return getattr(found, name)
 
 
 def find_beside(file: str) -> None:
