@@ -73,6 +73,8 @@ def test_the_option_line(command):
         (("trim", "--set", "cables.nose.anchor.7=3"), "there is no component 7; they are 0 to 2"),
         (("trim", "--set", "cables.nose.anchor.1=x"), "is no number"),
         (("trim", "--set", "cables.nose.anchor.1=3kg"), "'kg'"),
+        (("trim", "--set", "gusts=3"), "gusts: it is"),
+        (("trim", "--set", "wind=3"), "wind"),
     ],
 )
 def test_wrong_lines_and_names(command, words, said):

@@ -120,7 +120,7 @@ def _with_number(numbers: Any, places: Sequence[str], value: float, what: str) -
 
 def is_share(path: Sequence[str]) -> bool:
     """Return whether the values under a path are plain numbers without a unit: a law's shares, numbers of own code."""
-    return path[-1] == "numbers" or (path[:1] == ["control"] and path[-1].endswith("share"))
+    return list(path[-1:]) == ["numbers"] or (list(path[:1]) == ["control"] and path[-1].endswith("share"))
 
 
 def _is_number(value: Any) -> bool:

@@ -6,6 +6,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from tethership.errors import MOST_LETTERS, shown, suggestion
+from tethership.scenario.quantity import SI_UNIT
 
 
 def first_problem(error: ValidationError, origin: str, document: Any) -> str:
@@ -59,7 +60,8 @@ def _said(problem: Any) -> str:
     if kind == "missing" and isinstance(problem["loc"][-1], int):
         return "there are too few numbers in the list"
     if kind == "tuple_type":
-        return f'it is {shown(problem["input"])}; give a list, e.g. ["rewind"]'
+        example = 'e.g. ["rewind"]' if isinstance(problem["input"], str) else "or leave it out"
+        return f"it is {_came(problem['input'])}; give a list, {example}"
     if kind == "missing":
         return "it is missing; add it (`tethership new` writes a complete file to start from)"
     if kind in ("union_tag_not_found", "union_tag_invalid"):
@@ -70,4 +72,10 @@ def _said(problem: Any) -> str:
         return f"give {key} as one of {allowed}{near}"
     if kind == "value_error":
         return str(problem["ctx"]["error"])
-    return f"it is {shown(problem['input'])}; {problem['msg'][0].lower()}{problem['msg'][1:]}"
+    return f"it is {_came(problem['input'])}; {problem['msg'][0].lower()}{problem['msg'][1:]}"
+
+
+def _came(value: Any) -> str:
+    """Return a value as it was given: a bare number of a change has been given a unit on its way."""
+    bare = isinstance(value, dict) and value.keys() == {"value", "unit"} and value["unit"] == SI_UNIT
+    return shown(value["value"] if bare else value)
