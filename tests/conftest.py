@@ -3,6 +3,7 @@
 import contextlib
 import ctypes
 import gc
+import json
 import os
 import shutil
 import subprocess
@@ -10,6 +11,8 @@ from pathlib import Path
 
 import equinox as eqx
 import jax
+import matplotlib.image
+import numpy as np
 import pytest
 
 import tethership as ts
@@ -117,3 +120,27 @@ def browsed(browser, tmp_path):
         return subprocess.run(command, capture_output=True, text=True, timeout=120, check=True).stdout
 
     return shown
+
+
+def _is_whole(path):
+    """Return whether a written file is what its name says, to its end: a drawn picture, a page, JSON, a flight."""
+    match path.suffix:
+        case ".png":
+            pixels = matplotlib.image.imread(path)[..., :3]
+            inked = np.abs(pixels - pixels[0, 0]).max(axis=-1) > 0.1
+            rows, columns = inked.any(axis=1).mean(), inked.any(axis=0).mean()
+            return 0.005 < inked.mean() < 0.95 and rows > 0.5 and columns > 0.5
+        case ".html":
+            text = path.read_text(encoding="utf-8").rstrip()
+            return text.lower().startswith("<!doctype html>") and text.endswith("</html>")
+        case ".json":
+            return bool(json.loads(path.read_text(encoding="utf-8")))
+        case ".nc":
+            return len(ts.Flight.load(path).data["time"]) > 1
+    raise AssertionError(f"what is {path}?")
+
+
+@pytest.fixture(scope="session")
+def is_whole():
+    """Tell of a file that was written whether it is whole; an empty picture or a cut page is not."""
+    return _is_whole
