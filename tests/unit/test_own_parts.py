@@ -143,7 +143,7 @@ def test_loads_do_not_depend_on_the_reference_point(code):
     rates = jnp.array([0.1, -0.2, 0.3])
     velocity = jnp.array([2.0, 0.5, -0.3])
     attitude = jnp.array([0.1, 0.2, 2.0])
-    found = []
+    found, seen = [], []
     for point in (jnp.zeros(3), shift):
         plant = build_system(config, point)
         rotation = ts.spatial.rotation_matrix(attitude)
@@ -156,9 +156,12 @@ def test_loads_do_not_depend_on_the_reference_point(code):
         found.append((change.rates, change.velocity - jnp.cross(change.rates, point)))
         load = plant.wrenches(jnp.zeros(()), state, command, plant.cable_states(jnp.zeros(()), state, jnp.ones(1) * 20))
         assert float(jnp.linalg.norm(load["extra"].force)) > 1.0
+        seen.append(plant.seen(jnp.zeros(()), state, plant.cable_states(jnp.zeros(()), state, jnp.ones(1) * 20)))
     # of the body v_P = v_O + ω × q, and q is fixed in its axes
     assert np.allclose(found[0][0], found[1][0], rtol=1e-9, atol=1e-12)
     assert np.allclose(found[0][1], found[1][1], rtol=1e-9, atol=1e-12)
+    for one, other in zip(jax.tree.leaves(seen[0]), jax.tree.leaves(seen[1]), strict=True):
+        assert np.allclose(one, other, rtol=1e-9, atol=1e-12)
 
 
 def test_a_state_follows_its_closed_form_in_flight(code):
