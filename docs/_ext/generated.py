@@ -17,7 +17,7 @@ from sphinx.errors import SphinxError
 import tethership as ts
 from tethership.campaign.schema import CampaignConfig
 from tethership.cli import app as command_line
-from tethership.results.schema import VARIABLES
+from tethership.results.schema import OWN_VARIABLES, VARIABLES
 from tethership.scenario import ScenarioConfig, SolverConfig
 from tethership.scenario.load import describe_packaged
 from tethership.scenario.vehicle_schema import VehicleConfig
@@ -28,7 +28,7 @@ MARK = re.compile(r"\{\{generated:([\w-]+)\}\}")
 def outputs() -> list[str]:
     """Return the table of every output of a flight."""
     lines = ["| name | unit | dimensions | axes | what it is |", "|---|---|---|---|---|"]
-    for name, entry in VARIABLES.items():
+    for name, entry in (VARIABLES | OWN_VARIABLES).items():
         dims = ", ".join(("time", *entry.dims))
         lines.append(f"| `{name}` | {entry.unit} | {dims} | {entry.frame or '–'} | {entry.meaning} |")
     return lines

@@ -9,7 +9,7 @@ from tethership.cli.completion import complete_kind, complete_scenario
 from tethership.cli.result import Result, show
 from tethership.cli.tables import Cell, CsvOption, Table
 from tethership.errors import ConfigError, shown, suggestion
-from tethership.results import VARIABLES
+from tethership.results import OWN_VARIABLES, VARIABLES
 from tethership.scenario import KINDS, describe_packaged, list_parameters, load_scenario
 
 EXAMPLE = "Example: tethership list parameters mine.toml --csv parameters.csv"
@@ -63,7 +63,7 @@ def _outputs() -> dict[str, dict[str, Any]]:
     """Return every output of a flight with unit, dimensions, frame and meaning."""
     return {
         name: {"unit": of.unit, "dims": ["time", *of.dims], "frame": of.frame, "meaning": of.meaning}
-        for name, of in VARIABLES.items()
+        for name, of in (VARIABLES | OWN_VARIABLES).items()
     }
 
 

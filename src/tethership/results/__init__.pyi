@@ -24,6 +24,7 @@ from .schema import FLIGHT as FLIGHT
 from .schema import FORMAT as FORMAT
 from .schema import GROUND as GROUND
 from .schema import LINEAR_MODEL as LINEAR_MODEL
+from .schema import OWN_VARIABLES as OWN_VARIABLES
 from .schema import REGIMES as REGIMES
 from .schema import VARIABLES as VARIABLES
 from .schema import Variable as Variable

@@ -119,11 +119,15 @@ VARIABLES: dict[str, Variable] = {
     "cable_length": Variable("m", ("cable",), "unstretched length"),
     "rewind_rate": Variable("m/s", ("cable",), "rate at which the winch takes cable in"),
     "misalignment": Variable("rad", ("cable",), "horizontal angle from nose to anchor, positive to port"),
-    "part_states": Variable("its own unit", ("part_state",), "states of parts of one's own"),
-    "readings": Variable("its own unit", ("reading",), "what parts of one's own tell the laws"),
     "clearance": Variable("m", (), "height of the hull's lowest point above ground"),
 }
-"""All outputs by name; every one has `time` [s] as its first dimension."""
+"""Outputs of every flight by name; every one has `time` [s] as its first dimension."""
 
-SINCE_LAYOUT_2 = ("deflection_saturated", "throttle_asked", "deflection_asked", "part_states", "readings")
+OWN_VARIABLES: dict[str, Variable] = {
+    "part_states": Variable("its own unit", ("part_state",), "states of parts of one's own"),
+    "readings": Variable("its own unit", ("reading",), "what parts of one's own tell the laws"),
+}
+"""Outputs of flights whose ship has parts of one's own."""
+
+SINCE_LAYOUT_2 = ("deflection_saturated", "throttle_asked", "deflection_asked")
 """Outputs that files of layout 1 lack."""

@@ -15,6 +15,7 @@ from tethership.results.schema import (
     FLIGHT,
     FORMAT,
     GROUND,
+    OWN_VARIABLES,
     REGIMES,
     SINCE_LAYOUT_2,
     VARIABLES,
@@ -45,7 +46,7 @@ def to_dataset(arrays: dict[str, np.ndarray], names: dict[str, list[str]], attri
     for name, array in arrays.items():
         if name == "time":
             continue
-        entry = VARIABLES[name]
+        entry = (VARIABLES | OWN_VARIABLES)[name]
         described = {"units": entry.unit, "long_name": entry.meaning}
         if entry.frame:
             described["frame"] = entry.frame
@@ -53,7 +54,7 @@ def to_dataset(arrays: dict[str, np.ndarray], names: dict[str, list[str]], attri
             described["flag_meanings"] = " ".join(REGIMES)
         variables[name] = (("time", *entry.dims), np.asarray(array, dtype=np.float64), described)
     coordinates: dict[str, Any] = {"time": ("time", arrays["time"], {"units": "s", "long_name": "time"})}
-    used = {dim for name in arrays if name != "time" for dim in VARIABLES[name].dims}
+    used = {dim for name in arrays if name != "time" for dim in (VARIABLES | OWN_VARIABLES)[name].dims}
     coordinates |= {key: (key, list(value)) for key, value in labels.items() if key in used and len(value)}
     written = {key: json.dumps(value, sort_keys=True) for key, value in attributes.items()}
     header = {"kind": FLIGHT.name, "format": FORMAT, "tethership_version": __version__}
@@ -88,7 +89,8 @@ def check_flight(dataset: xr.Dataset, origin: str) -> None:
     """
     if "time" not in dataset.variables:
         raise ConfigError(f"{origin} is no whole flight: time is missing")
-    expected = {name: (entry.unit, ("time", *entry.dims)) for name, entry in VARIABLES.items()}
+    own = {name: entry for name, entry in OWN_VARIABLES.items() if name in dataset.variables}
+    expected = {name: (entry.unit, ("time", *entry.dims)) for name, entry in (VARIABLES | own).items()}
     for name, (unit, dims) in {"time": ("s", ("time",)), **expected}.items():
         if name in SINCE_LAYOUT_2 and name not in dataset.variables:
             continue  # where a file of layout 2 lost it, its checksums have said so

@@ -261,7 +261,9 @@ class ScenarioConfig(Table):
         if self.trim.position is None and (not self.cables or self.trim.elongation is None):
             raise ValueError("trim needs a position, or a cable and an elongation")
         parts = (*self.vehicle.fins, *self.vehicle.thrusters, *self.cables)
-        check_apart((part.name for part in (*parts, *self.vehicle.parts)), "cables, fins, thrusters or parts")
+        own = self.vehicle.parts
+        kinds = "cables, fins, thrusters or parts" if own else "cables, fins or thrusters"
+        check_apart((part.name for part in (*parts, *own)), kinds)
         weakest = min((cable.breaking_force for cable in self.cables), default=None)
         given = self.limits.cable_break
         if weakest is None and given is None:

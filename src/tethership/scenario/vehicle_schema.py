@@ -366,5 +366,6 @@ class VehicleConfig(Table):
                 f"envelope.drag_coefficient is for a hull that is nearly a sphere, and this one is {self.fineness:.3g} "
                 f"times as long as wide (below {SLENDER}); give axial_drag_coefficient and cross_flow_drag_coefficient"
             )
-        check_apart((part.name for part in (*self.fins, *self.thrusters, *self.parts)), "fins, thrusters or parts")
+        parts = (*self.fins, *self.thrusters, *self.parts)
+        check_apart((part.name for part in parts), "fins, thrusters or parts" if self.parts else "fins or thrusters")
         return self

@@ -16,7 +16,8 @@ CURVE_POINTS = 17
 def record(loop: ClosedLoop, time: Float[Array, ""], vector: Float[Array, "n"]) -> dict[str, Array]:
     """Return all outputs at time t [s] for an integrator's vector; units and axes in `results.schema`."""
     now = loop.instant(time, vector)
-    return {**_ship(loop, time, now), **_own(now), **_loads(now), **_cables(loop, now)}
+    own = _own(now) if loop.plant.parts else {}
+    return {**_ship(loop, time, now), **own, **_loads(now), **_cables(loop, now)}
 
 
 def _ship(loop: ClosedLoop, time: Float[Array, ""], now: Instant) -> dict[str, Array]:
