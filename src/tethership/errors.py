@@ -36,6 +36,15 @@ def one_line(message: str) -> str:
     return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in " ".join(whole.split()))
 
 
+def failure(error: Exception) -> str:
+    """Return in one line what code of one's own did, with the cure where the mistake is a common one."""
+    said = str(error).strip().splitlines() or ["no more is known"]
+    what = f"{type(error).__name__}: {said[0]}"
+    if "TracerBool" in what or "ConcretizationTypeError" in what:
+        return f"{what} – choose with jnp.where in place of `if`: its numbers are known only in flight"
+    return what
+
+
 class TethershipError(Exception):
     """Base of all errors that this package raises on purpose; its message is one line."""
 

@@ -99,6 +99,41 @@ class Stateful(ts.AbstractPart):
         return (("level", "1"),)
 
 
+class Misspelt(Push):
+    def wrench(self, time, own, seen):
+        return ts.Wrench.at(self.positoin, self.force)
+
+
+class Choosing(Push):
+    def wrench(self, time, own, seen):
+        return ts.Wrench(self.force if seen.density > 1 else -self.force, jnp.zeros(3))
+
+
+class Flat(Push):
+    def wrench(self, time, own, seen):
+        return self.force
+
+
+class Pair(Altimeter):
+    def reading(self, time, own, seen):
+        return seen.velocity
+
+
+class Short(Altimeter):
+    def rate(self, time, own, seen):
+        return jnp.zeros(2)
+
+
+class Listener(ts.AbstractLaw):
+    def __call__(self, time, measurement, memory):
+        return ts.Correction(throttle=measurement.readings["altimetr"]), memory
+
+
+class Silent(ts.AbstractLaw):
+    def __call__(self, time, measurement, memory):
+        return {"throttle": 0.1}
+
+
 class Nameless(ts.AbstractPart):
     def states(self):
         return "level"
@@ -282,6 +317,9 @@ def test_the_packages_own_classes_need_no_trust():
     assert ts.trim(scenario).outcome.is_start
 
 
+PUSH = {"position": [0.0, 0.0, 0.0], "force": [1.0, 0.0, 0.0]}
+
+
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
@@ -297,6 +335,15 @@ def test_the_packages_own_classes_need_no_trust():
             "two",
         ),
         ({"vehicle.parts": [{"name": "x", "model": "os.system"}]}, "vehicle.parts.x.model"),
+        (entry("Misspelt", **PUSH), r"Misspelt.wrench fails: AttributeError.*positoin"),
+        (entry("Choosing", **PUSH), r"Choosing.wrench fails: .*choose with jnp.where in place of `if`"),
+        (entry("Flat", **PUSH), "Flat.wrench gives no Wrench of three and three components"),
+        (entry("Push", **PUSH | {"position": [1.0, 2.0]}), r"have shapes \(2,\) and \(3,\); give three each"),
+        (entry("Pair", lag=1.0), r"Pair.reading gives shape \(3,\); give one number"),
+        (entry("Short", lag=1.0), r"Short.rate gives shape \(2,\); give \(1,\), one a state"),
+        (entry("Altimeter"), "it lacks lag; its fields: lag"),
+        (entry("Altimeter", lga=1.0, lag=1.0), "it has no 'lga'; did you mean 'lag'"),
+        (entry("Altimeter", lag={"value": 1.0, "unit": "s"}), "lag is given with a unit; own code takes bare numbers"),
         ({"vehicle.parts": [{"name": "x", "model": "my_own_parts:Push", "numbers": {"force": "up"}}]}, "force"),
         ({"cables.nose.line": {"model": "my_own_parts:Push"}}, "is no line; make it a subclass"),
         ({"cables.nose.line": {"model": "my_own_parts:Line", "numbers": {"knots": 2.0}}}, "knots"),
@@ -314,7 +361,39 @@ def test_a_part_named_as_a_load_and_one_that_does_not_rest(code):
         ts.trim(twice)
     restless = ts.load_scenario("docking", entry("Restless", lag=0.5, strength=0.0), trust=True)
     with pytest.raises(ts.ConfigError, match=r"extra\.level changes at -2 a second where rest\(\) puts it"):
-        ts.fly(restless, ts.trim(restless), stop=1.0)
+        ts.trim(restless)
+
+
+@pytest.mark.parametrize(
+    ("model", "said"),
+    [
+        ("Listener", "law 'x' fails: KeyError: 'altimetr'"),
+        ("Silent", "law 'x' returns a dict; let it return a Correction"),
+    ],
+)
+def test_a_law_that_fails_is_told_by_its_name_in_one_line(code, model, said):
+    scenario = ts.load_scenario(
+        "docking", {"control.laws": [{"name": "x", "model": f"my_own_parts:{model}"}]}, trust=True
+    )
+    with pytest.raises(ts.ConfigError, match=said) as caught:
+        ts.fly(scenario, ts.trim(scenario), stop=1.0)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_trim_asks_for_a_scenario_and_things_say_what_they_are(code):
+    with pytest.raises(ts.ConfigError, match="'docking' is no scenario; give load_scenario"):
+        ts.trim("docking")
+    scenario = ts.load_scenario("docking")
+    assert repr(scenario) == "<Scenario: docking, Docking with a rewinding cable>"
+    assert repr(ts.fly(scenario, ts.trim(scenario), stop=0.5)) == "<Flight: time_limit after 0.5 s>"
+
+
+def test_a_period_longer_than_what_is_flown_is_refused():
+    scenario = ts.load_scenario("docking", {"control.period": 10.0})
+    with pytest.raises(ts.ConfigError, match=r"control\.period 10 s is longer than the flight, 3 s"):
+        ts.fly(scenario, ts.trim(scenario), stop=3.0)
+    with pytest.raises(ts.ConfigError, match=r"control\.period: it is 1e-06 s; it must be at least 0\.0001"):
+        ts.load_scenario("docking", {"control.period": 1e-6})
 
 
 def test_what_cannot_be_given_in_python(code):

@@ -7,7 +7,8 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from tethership.control.law import AbstractLaw, Asked, Correction, Measurement, added, switched
+from tethership.control.law import AbstractLaw, Asked, Correction, Measurement, Request, added, switched
+from tethership.errors import ConfigError, failure
 
 
 class LayeredLaw(AbstractLaw):
@@ -35,7 +36,7 @@ class LayeredLaw(AbstractLaw):
         total: Asked = Correction()
         rates = []
         for i, (law, own) in enumerate(zip(self.laws, memory, strict=True)):
-            correction, rate = law(time, measurement, own)
+            correction, rate = _called(self.names[i], law, time, measurement, own)
             total = added(total, correction if self.switches is None else switched(correction, self.switches[i]))
             rates.append(rate)
         return total, tuple(rates)
@@ -50,3 +51,18 @@ class LayeredLaw(AbstractLaw):
     def initial_memory(self, measurement: Measurement) -> tuple[Any, ...]:
         """Return the memories of all laws."""
         return tuple(law.initial_memory(measurement) for law in self.laws)
+
+
+def _called(name: str, law: AbstractLaw, *given: Any) -> tuple[Asked, Any]:
+    """Return what a law returns; raises ConfigError with its name where it fails, or returns something else."""
+    try:
+        returned = law(*given)
+    except ConfigError:
+        raise
+    except Exception as error:  # whatever code of one's own does
+        raise ConfigError(f"law {name!r} fails: {failure(error)}") from error
+    if isinstance(returned, tuple) and len(returned) == 2 and isinstance(returned[0], Correction | Request):
+        return returned
+    raise ConfigError(
+        f"law {name!r} returns a {type(returned).__name__}; let it return a Correction or Request and the memory's rate"
+    )

@@ -1,5 +1,6 @@
 from .balance import DRIFT_LIMIT as DRIFT_LIMIT
 from .balance import RESIDUAL_LIMIT as RESIDUAL_LIMIT
+from .balance import check_parts as check_parts
 from .balance import drift as drift
 from .balance import left_over as left_over
 from .balance import residual as residual

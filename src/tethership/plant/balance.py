@@ -6,10 +6,13 @@ Balanced loads alone are none: with a pitch rate held at 0.1 rad/s they may bala
 must stand still is the attitude, and on a cable, whose anchor does, the ship itself.
 """
 
+import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from tethership.errors import ConfigError
+from tethership.plant.layout import part_layout
 from tethership.plant.plant import TetheredAirship
 from tethership.plant.state import Command, State
 from tethership.spatial import STANDARD_GRAVITY, euler_rates, rotation_matrix
@@ -22,6 +25,9 @@ RESIDUAL_LIMIT = 1e-6
 
 MOTIONS = ("phi", "theta", "psi", "north", "east", "down")
 """What must stand still, in the order of `drift` [rad/s, m/s]; the last three only on a cable."""
+
+STILL = 1e-6
+"""Largest rate of a part's state at rest [its unit per second]."""
 
 DRIFT_LIMIT = 1e-6
 """Largest rate of what must stand still [rad/s, m/s]: a search for it ends at rounding."""
@@ -62,6 +68,29 @@ def drift(plant: TetheredAirship, state: State, turning: Float[Array, "3"] | Non
     moving = rotation_matrix(state.attitude) @ state.velocity
     drawn = plant.anchor_velocity()
     return jnp.concatenate([turns, moving if drawn is None else moving - drawn])
+
+
+@eqx.filter_jit
+def _part_rates(plant: TetheredAirship, state: State) -> Array:
+    """Return how fast the states of parts of one's own change where they say they rest [their unit per second]."""
+    now, mean = jnp.zeros(()), plant.at_mean()
+    cables = mean.cable_states(now, state, mean.initial_lengths())
+    return jnp.concatenate(mean.part_rates(now, state, cables, mean.parts_at_rest(now, state, cables)))
+
+
+def check_parts(plant: TetheredAirship, state: State) -> None:
+    """Raise ConfigError where a part of one's own does not rest where it says so.
+
+    At rest each state changes by no more than `STILL` [their unit per second], in the mean air at t = 0 [s].
+    """
+    if not plant.parts:
+        return
+    for name, rate in zip(part_layout(plant).names, np.asarray(_part_rates(plant, state)), strict=True):
+        if not abs(rate) <= STILL:
+            raise ConfigError(
+                f"the part's state {name} changes at {rate:.3g} a second where rest() puts it; "
+                "let rest() be where rate() is zero"
+            )
 
 
 def residual_limit(plant: TetheredAirship) -> Float[Array, ""]:

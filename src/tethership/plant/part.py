@@ -52,6 +52,24 @@ class Seen(NamedTuple):
     gravity: Float[Array, "3"]
     cables: tuple[Float[Array, "3"], ...]
 
+    @classmethod
+    def example(cls, cables: int = 0) -> "Seen":
+        """Return what a part would meet level at 10 m/s, 100 m above the ground, on so many slack cables."""
+        zero, one = jnp.zeros(3), jnp.ones(())
+        ahead, gravity = jnp.array([10.0, 0.0, 0.0]), jnp.array([0.0, 0.0, 9.81])
+        return cls(
+            ahead,
+            ahead,
+            zero,
+            zero,
+            zero,
+            jnp.array([0.0, 0.0, -100.0]),
+            100.0 * one,
+            1.2 * one,
+            gravity,
+            (zero,) * cables,
+        )
+
 
 class AbstractPart(eqx.Module):
     """A part of the ship; its numbers are fields, and what it does not say it does not have."""

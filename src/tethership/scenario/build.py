@@ -71,7 +71,7 @@ def build_system(config: ScenarioConfig, reference_point: Float[Array, "3"] | No
         cables=tuple(_cable(cable, config.formulation, shift) for cable in config.cables),
         thrusters=build_actuators(config.vehicle.thrusters),
         surfaces=build_actuators(config.vehicle.fins),
-        parts=tuple(make_part(part) for part in config.vehicle.parts),
+        parts=tuple(make_part(part, len(config.cables)) for part in config.vehicle.parts),
         origin=-shift,
         names=part_names(config),
     )

@@ -146,7 +146,7 @@ class ControlConfig(Table):
     layers: tuple[str, ...] = ()
     sas: bool = True
     gain_thrust: Annotated[float, Quantity("N", positive=True)] | None = None
-    period: Annotated[float, Quantity("s", positive=True)] | None = None
+    period: Annotated[float, Quantity("s", positive=True, low=1e-4)] | None = None
     delay: Annotated[float, Quantity("s", low=0.0)] | None = None
     allocation: dict[str, Share] = Field(default_factory=dict)
     laws: tuple[OwnLawConfig, ...] = ()

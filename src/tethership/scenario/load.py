@@ -53,6 +53,10 @@ class Scenario:
     system: TetheredAirship
     trusted: bool = False
 
+    def __repr__(self) -> str:
+        """Return what it is in a line; `config` shows the rest."""
+        return f"<Scenario: {self.name}, {self.config.title}>"
+
     @property
     def formulation(self) -> str:
         """`consistent` or `published`."""

@@ -9,15 +9,17 @@ import sys
 from pathlib import Path
 from typing import Any, TypeVar
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 
 from tethership.control import AbstractLaw
-from tethership.errors import ConfigError, suggestion
+from tethership.errors import ConfigError, failure, suggestion
 from tethership.physics.cable import AbstractTensionLaw
-from tethership.plant import AbstractPart, says
+from tethership.plant import AbstractPart, Seen, says
 from tethership.scenario.own_schema import OwnCode, OwnLawConfig, OwnLine, OwnPartConfig
 from tethership.scenario.schema import CableConfig
+from tethership.spatial import Wrench
 
 Own = TypeVar("Own")
 
@@ -30,8 +32,8 @@ def make_law(config: OwnLawConfig) -> AbstractLaw:
     return _made(config, f"law {config.name!r}", AbstractLaw, "tethership.AbstractLaw")
 
 
-def make_part(config: OwnPartConfig) -> AbstractPart:
-    """Return a part of one's own with its numbers.
+def make_part(config: OwnPartConfig, cables: int) -> AbstractPart:
+    """Return a part of one's own with its numbers, for a ship on so many cables.
 
     Raises
     ------
@@ -40,7 +42,7 @@ def make_part(config: OwnPartConfig) -> AbstractPart:
     """
     what = f"part {config.name!r}"
     part = _made(config, what, AbstractPart, "tethership.AbstractPart")
-    check_part(part, what, config.model)
+    check_part(part, cables, what, config.model)
     return part
 
 
@@ -62,7 +64,7 @@ def make_line(config: OwnLine, cable: CableConfig) -> AbstractTensionLaw:
     return _with_numbers(kind, {**{k: getattr(cable, k) for k in known if k in wanted}, **config.numbers}, config, what)
 
 
-def check_part(part: AbstractPart, what: str, model: str) -> None:
+def check_part(part: AbstractPart, cables: int, what: str, model: str) -> None:
     """Raise ConfigError where a part's states are not named, or nothing is said of how they rest and change."""
     states = part.states()
     named = isinstance(states, tuple | list) and all(
@@ -76,6 +78,30 @@ def check_part(part: AbstractPart, what: str, model: str) -> None:
     lacking = [method for method in ("rest", "rate") if states and not says(part, method)]
     if lacking:
         raise ConfigError(f"{what}: {model} has states and no {' and no '.join(lacking)}; say how they rest and change")
+    _try(part, len(states), cables, what, model)
+
+
+def _try(part: AbstractPart, count: int, cables: int, what: str, model: str) -> None:
+    """Raise ConfigError where a method of a part fails, or returns what is of another form; nothing is computed."""
+    now, own, seen = jnp.zeros(()), jnp.zeros(count), Seen.example(cables)
+
+    def tried(method: str, *given: Any) -> Any:
+        try:
+            return jax.eval_shape(getattr(part, method), *given)
+        except Exception as error:  # whatever code of one's own does
+            raise ConfigError(f"{what}: {model}.{method} fails: {failure(error)}") from error
+
+    for method, given in (("rest", (seen,)), ("rate", (now, own, seen))):
+        shape = getattr(tried(method, *given), "shape", None)
+        if shape != (count,):
+            raise ConfigError(f"{what}: {model}.{method} gives shape {shape}; give ({count},), one a state")
+    load, told = (tried(method, now, own, seen) for method in ("wrench", "reading"))
+    if load is not None and not (
+        isinstance(load, Wrench) and all(jnp.shape(each) == (3,) for each in (load.force, load.moment))
+    ):
+        raise ConfigError(f"{what}: {model}.wrench gives no Wrench of three and three components; give ts.Wrench(f, m)")
+    if told is not None and getattr(told, "shape", None) != ():
+        raise ConfigError(f"{what}: {model}.reading gives shape {getattr(told, 'shape', None)}; give one number, ()")
 
 
 def as_entry(name: str, part: AbstractPart) -> dict[str, Any]:
@@ -123,10 +149,24 @@ def _made(config: OwnCode, what: str, base: type[Own], base_name: str) -> Own:
 
 def _with_numbers(kind: Any, numbers: dict[str, Any], config: OwnCode, what: str) -> Any:
     """Return an object of a class with its numbers as arrays."""
+    fields = {field.name: field for field in dataclasses.fields(kind)}
+    needed = [name for name, field in fields.items() if _needed(field) and name not in numbers]
+    unknown = [name for name in numbers if name not in fields]
+    if needed or unknown:
+        said = f"it lacks {', '.join(needed)}"
+        if not needed:
+            said = f"it has no {unknown[0]!r}{suggestion(unknown[0], fields)}".rstrip(".")
+        there = f"its fields: {', '.join(fields) or 'none'}"
+        raise ConfigError(f"{what}: {config.model} does not take these numbers: {said}; {there}")
     try:
         return kind(**{name: jnp.asarray(value) for name, value in numbers.items()})
-    except TypeError as error:
-        raise ConfigError(f"{what}: {config.model} does not take these numbers: {error}") from error
+    except Exception as error:  # whatever a check of its own says
+        raise ConfigError(f"{what}: {config.model} does not take these numbers: {failure(error)}") from error
+
+
+def _needed(field: Any) -> bool:
+    """Return whether a field has no default."""
+    return field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
 
 
 def _kind(config: OwnCode, what: str, base: type, base_name: str) -> Any:
@@ -143,10 +183,9 @@ def _imported(model: str, what: str) -> Any:
     try:
         found = importlib.import_module(module)
     except Exception as error:
-        raise ConfigError(
-            f"{what}: {module} cannot be imported ({type(error).__name__}: {error}); it must lie beside "
-            "the scenario's file or on Python's path"
-        ) from error
+        lost = isinstance(error, ModuleNotFoundError) and module.startswith(error.name or module)
+        cure = "it must lie beside the scenario's file or on Python's path" if lost else "mend it"
+        raise ConfigError(f"{what}: {module} cannot be imported ({failure(error)}); {cure}") from error
     if not hasattr(found, name):
         raise ConfigError(f"{what}: {module} has no {name!r}{suggestion(name, dir(found))}")
     return getattr(found, name)

@@ -29,6 +29,9 @@ class OwnCode(Table):
     def _vectors(cls, datum: Any) -> Any:
         if not isinstance(datum, dict):
             return datum
+        for key, value in datum.items():
+            if isinstance(value, dict):
+                raise ValueError(f"{key} is given with a unit; own code takes bare numbers, in units of its own")
         return {key: tuple(value) if isinstance(value, list) else value for key, value in datum.items()}
 
 

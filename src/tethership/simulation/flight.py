@@ -36,6 +36,10 @@ class Flight:
     data: xr.Dataset
     outcome: Outcome
 
+    def __repr__(self) -> str:
+        """Return what it is in a line; `data` shows the rest."""
+        return f"<Flight: {self.outcome.name} after {float(self.data['time'][-1]):.4g} s>"
+
     @functools.cached_property
     def attributes(self) -> dict[str, Any]:
         """Input and versions, decoded."""

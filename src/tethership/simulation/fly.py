@@ -81,6 +81,11 @@ def fly(
     check_point(scenario, point)
     plant = scenario.system if rewind else scenario.system.with_winches_held()
     loop = build_loop(scenario.config, plant.with_a_gust(), point.command, acting)
+    if loop.sampling is not None and float(loop.sampling.period) > ends.time_limit:
+        raise ConfigError(
+            f"control.period {float(loop.sampling.period):g} s is longer than the flight, {ends.time_limit:g} s; "
+            "give a shorter period"
+        )
     conditions = ends.conditions()
     vector, margins = begin(loop, conditions, start_state(scenario, point.state))
     check_start(margins)

@@ -17,18 +17,15 @@ from tethership.plant import (
     Command,
     State,
     TetheredAirship,
+    check_parts,
     drift,
     left_over,
-    part_layout,
     residual,
     residual_limit,
 )
 from tethership.scenario import Scenario, StartConfig
 from tethership.simulation.events import StopConditions
 from tethership.spatial import rotation_matrix
-
-STILL = 1e-6
-"""Largest rate of a part's state at rest [its unit per second]."""
 
 
 class Start(Protocol):
@@ -94,30 +91,6 @@ def _balance(
     return residual(plant.at_mean(), state, command), drift(plant, state, turning)
 
 
-@eqx.filter_jit
-def _part_rates(plant: TetheredAirship, state: State) -> Array:
-    """Return how fast the states of parts of one's own change where they say they rest [their unit per second]."""
-    now, mean = jnp.zeros(()), plant.at_mean()
-    cables = mean.cable_states(now, state, mean.initial_lengths())
-    return jnp.concatenate(mean.part_rates(now, state, cables, mean.parts_at_rest(now, state, cables)))
-
-
-def check_parts(scenario: Scenario, point: Start) -> None:
-    """Raise ConfigError where a part of one's own does not rest where it says so.
-
-    At rest each state changes by no more than `STILL` [their unit per second], in the mean air at t = 0 [s].
-    """
-    if not scenario.system.parts:
-        return
-    rates = np.asarray(_part_rates(scenario.system, point.state))
-    for name, rate in zip(part_layout(scenario.system).names, rates, strict=True):
-        if not abs(rate) <= STILL:
-            raise ConfigError(
-                f"the part's state {name} changes at {rate:.3g} a second where rest() puts it; "
-                "let rest() be where rate() is zero"
-            )
-
-
 def check_point(scenario: Scenario, point: Start) -> None:
     """Raise ConfigError where a point is no equilibrium of the scenario: trimmed for another one, say.
 
@@ -128,7 +101,7 @@ def check_point(scenario: Scenario, point: Start) -> None:
     -----
     Ten times what a trim may leave: a stored or continued point may differ from one found anew by its rounding.
     """
-    check_parts(scenario, point)
+    check_parts(scenario.system, point.state)
     turning = scenario.config.turning()
     given = None if turning is None else jnp.asarray(turning)
     found = _balance(scenario.system.with_a_gust(), point.state, point.command, given)

@@ -21,7 +21,15 @@ class Wrench(eqx.Module):
 
     @classmethod
     def at(cls, point: Float[Array, "3"], force: Float[Array, "3"]) -> "Wrench":
-        """Return the wrench of a force [N] at a point [m], about the origin: m = q × f."""
+        """Return the wrench of a force [N] at a point [m], about the origin: m = q × f.
+
+        Raises
+        ------
+        ValueError
+            One of them has not three components; `jnp.cross` would take two.
+        """
+        if jnp.shape(point) != (3,) or jnp.shape(force) != (3,):
+            raise ValueError(f"point and force have shapes {jnp.shape(point)} and {jnp.shape(force)}; give three each")
         return cls(force, jnp.cross(point, force))
 
     def moved(self, offset: Float[Array, "3"]) -> "Wrench":

@@ -11,8 +11,8 @@ from tethership.analysis.trim.judgement import judge
 from tethership.analysis.trim.outcome import TrimOutcome
 from tethership.analysis.trim.problem import Question, ask, posed
 from tethership.analysis.trim.solve import described, solve
-from tethership.errors import SolveError
-from tethership.plant import Command, State, residual_limit
+from tethership.errors import ConfigError, SolveError, shown
+from tethership.plant import Command, State, check_parts, residual_limit
 from tethership.scenario import Scenario
 
 __all__ = ["TrimOutcome", "TrimPoint", "solved", "trim"]
@@ -92,7 +92,7 @@ def trim(
     Raises
     ------
     ConfigError
-        A name is not known.
+        A name is not known, or a part of one's own does not rest where it says.
     SolveError
         With `throw`, no equilibrium.
 
@@ -103,7 +103,10 @@ def trim(
     >>> point.outcome.name, round(float(point.tension[0]), 2)
     ('converged', 14.17)
     """
+    if not isinstance(scenario, Scenario):
+        raise ConfigError(f"trim: {shown(scenario)} is no scenario; give load_scenario(...)")
     _, point = solved(scenario, ask(scenario, unknowns, fixed))
+    check_parts(scenario.system, point.state)
     if throw and not point.outcome.is_start:
         raise SolveError(f"{point.message} Residual: {np.asarray(point.residual)} N, N m")
     return point
