@@ -101,7 +101,7 @@ class Stateful(ts.AbstractPart):
 
 class Misspelt(Push):
     def wrench(self, time, own, seen):
-        return ts.Wrench.at(self.positoin, self.force)
+        return ts.Wrench.at(self.place, self.force)
 
 
 class Choosing(Push):
@@ -335,7 +335,7 @@ PUSH = {"position": [0.0, 0.0, 0.0], "force": [1.0, 0.0, 0.0]}
             "two",
         ),
         ({"vehicle.parts": [{"name": "x", "model": "os.system"}]}, "vehicle.parts.x.model"),
-        (entry("Misspelt", **PUSH), r"Misspelt.wrench fails: AttributeError.*positoin"),
+        (entry("Misspelt", **PUSH), r"Misspelt.wrench fails: AttributeError.*place"),
         (entry("Choosing", **PUSH), r"Choosing.wrench fails: .*choose with jnp.where in place of `if`"),
         (entry("Flat", **PUSH), "Flat.wrench gives no Wrench of three and three components"),
         (entry("Push", **PUSH | {"position": [1.0, 2.0]}), r"have shapes \(2,\) and \(3,\); give three each"),
