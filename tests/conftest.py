@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 import tethership as ts
+from tethership import cli
 
 MAPS = Path("/proc/self/maps")
 MOST_MAPS = 20_000
@@ -144,3 +145,17 @@ def _is_whole(path):
 def is_whole():
     """Tell of a file that was written whether it is whole; an empty picture or a cut page is not."""
     return _is_whole
+
+
+@pytest.fixture
+def command(capsys, monkeypatch):
+    """Run a command in this process: words to exit code, standard output and standard error."""
+
+    def run(*words):
+        monkeypatch.setattr("sys.argv", ["tethership", *words])
+        with pytest.raises(SystemExit) as caught:
+            cli.main()
+        out, err = capsys.readouterr()
+        return caught.value.code, out, err
+
+    return run

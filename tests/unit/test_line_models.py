@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import tethership as ts
-from tethership.cli import main
 from tethership.physics.cable import ElasticCatenary, PublishedTension
 
 KINDS = {"catenary": ElasticCatenary, "published": PublishedTension}
@@ -40,18 +39,6 @@ def test_cables_have_lines_of_their_own():
         PublishedTension,
         *[ElasticCatenary] * (len(names) - 1),
     ]
-
-
-@pytest.fixture
-def command(capsys, monkeypatch):
-    def run(*words):
-        monkeypatch.setattr("sys.argv", ["tethership", *words])
-        with pytest.raises(SystemExit) as caught:
-            main()
-        out, err = capsys.readouterr()
-        return caught.value.code, out, err
-
-    return run
 
 
 def test_the_option_line(command):

@@ -29,6 +29,12 @@ def counted():
     jax.monitoring.unregister_event_duration_listener(listener)
 
 
+def test_a_program_is_counted():
+    with counted() as seen:
+        jax.jit(lambda x: x * 1.25 + 0.75)(np.ones(3))
+    assert len(seen) == 1
+
+
 def test_layers_sas_and_gusts_are_switches():
     with_gust = ts.load_scenario("docking")
     without = with_gust.changed({"gusts": []})

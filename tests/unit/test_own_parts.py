@@ -13,7 +13,6 @@ import pytest
 
 import tethership as ts
 from tethership.campaign import Cases, fly_cases, layer_switches
-from tethership.cli import main
 from tethership.plant import ClosedLoop, Command, State
 from tethership.scenario.build import build_system
 from tethership.scenario.load import packaged_text
@@ -310,6 +309,17 @@ def test_a_line_of_ones_own_is_the_packages_to_the_bit(code):
         ts.load_scenario("docking", {"cables.nose.line": {"model": "my_own_parts:Line"}})
 
 
+def test_parts_given_do_not_make_code_of_the_file_trusted(code):
+    law = {"control.laws": [{"name": "x", "model": "my_own_parts:Silent"}]}
+    push = code.Push(np.zeros(3), np.zeros(3))
+    with pytest.raises(ts.ConfigError, match="my_own_parts:Silent, which runs only when told so"):
+        ts.load_scenario("docking", law, own_parts={"push": push})
+    with pytest.raises(ts.ConfigError, match="my_own_parts:Silent, which runs only when told so"):
+        ts.load_scenario("docking", law).with_parts({"push": push})
+    twice = ts.load_scenario("docking", own_parts={"push": push}).with_parts({"more": push})
+    assert [part.name for part in twice.config.vehicle.parts] == ["push", "more"]
+
+
 def test_the_packages_own_classes_need_no_trust():
     line = "tethership.physics.cable:ElasticCatenary"
     scenario = ts.load_scenario("docking", {"cables.nose.line.model": line})
@@ -420,18 +430,6 @@ def test_a_class_of_a_console_or_notebook_is_found():
     assert total_load(ts.trim(scenario), "lift")[2] == pytest.approx(-10.0)
     with pytest.raises(ts.ConfigError, match="is no law"):
         scenario.changed({"control.laws": [{"name": "x", "model": "builtins:Lift"}]}).law()
-
-
-@pytest.fixture
-def command(capsys, monkeypatch):
-    def run(*words):
-        monkeypatch.setattr("sys.argv", ["tethership", *words])
-        with pytest.raises(SystemExit) as caught:
-            main()
-        out, err = capsys.readouterr()
-        return caught.value.code, out, err
-
-    return run
 
 
 def test_a_file_that_stands_on_another_names_a_part_and_is_not_run_untold(code, tmp_path, command):

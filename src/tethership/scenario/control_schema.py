@@ -178,11 +178,11 @@ class ControlConfig(Table):
             raise ValueError(f"delay {self.delay:g} s {within}; give a period at least as long")
         return self
 
-    def check_period(self, time_limit: float) -> None:
+    def check_period(self, time_limit: float, what: str = "stop.time_limit ") -> None:
         """Raise ValueError if the laws' period is longer than a flight of `time_limit` [s]: they look once then."""
         if self.period is not None and self.period > time_limit:
             raise ValueError(
-                f"control.period {self.period:g} s is longer than the flight, stop.time_limit {time_limit:g} s; "
+                f"control.period {self.period:g} s is longer than the flight, {what}{time_limit:g} s; "
                 "give a shorter period"
             )
 

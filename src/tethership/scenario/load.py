@@ -117,8 +117,10 @@ class Scenario:
         Raises
         ------
         ConfigError
-            One is no part, its class is not at the top of a module, or a field is no number.
+            One is no part, its class is not at the top of a module, or a field is no number; or the scenario names
+            code of one's own itself and is not trusted.
         """
+        self.check_trust()  # the parts given are trusted, what the file names is not thereby
         entries = {part["name"]: part for part in self.document["vehicle"].get("parts", [])}
         entries |= {name: as_entry(name, part) for name, part in parts.items()}
         return from_document(self.document, self.name, {"vehicle.parts": list(entries.values())}, trusted=True)
@@ -209,7 +211,6 @@ def load_scenario(
         ``vehicle.thrusters.*.lag``.
     trust : bool
         Let code of one's own that the file names be run (`control.laws`, `vehicle.parts`, `cables.*.line`).
-
     own_parts : mapping of str to AbstractPart, optional
         Parts of one's own for its ship, as in `Scenario.with_parts`.
 

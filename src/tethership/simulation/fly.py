@@ -78,14 +78,13 @@ def fly(
     config = read_solver(solver) if isinstance(solver, str) else solver
     acting, names, active = _law(scenario, law, layers, sas, own_laws or {})
     ends = Stop.of(scenario, stop)
+    try:
+        scenario.config.control.check_period(ends.time_limit, "")
+    except ValueError as error:
+        raise ConfigError(str(error)) from error
     check_point(scenario, point)
     plant = scenario.system if rewind else scenario.system.with_winches_held()
     loop = build_loop(scenario.config, plant.with_a_gust(), point.command, acting)
-    if loop.sampling is not None and float(loop.sampling.period) > ends.time_limit:
-        raise ConfigError(
-            f"control.period {float(loop.sampling.period):g} s is longer than the flight, {ends.time_limit:g} s; "
-            "give a shorter period"
-        )
     conditions = ends.conditions()
     vector, margins = begin(loop, conditions, start_state(scenario, point.state))
     check_start(margins)
