@@ -1,7 +1,11 @@
-"""JAX as this package needs it: set up when it is first imported, by whatever imports it. Depends on: nothing.
+"""JAX as this package needs it: set up when first imported, whole before threads meet in it. Depends on: nothing.
 
 Importing this package must not import JAX, which takes half a second that `tethership --version` does not have. So
-the one place through which every import of JAX goes, Python's own, is told what to do once it is there.
+the one place through which every import goes, Python's own, is told what to do.
+
+Two threads must not import JAX at the same time: where one is in the middle of `import jax`, Python lets another begin
+with `jax.numpy`, and either may meet a module half made ("partially initialized", "deadlock detected"). So JAX is
+imported, as a whole, before any module of this package that computes: the second thread then waits for the first.
 """
 
 import importlib.util
@@ -10,6 +14,19 @@ from importlib.machinery import ModuleSpec
 from typing import Any
 
 from tethership._cache import use_compilation_cache
+
+WITHOUT = ("cli", "results", "view", "explorer")
+"""Rooms without JAX: whatever of them computes does so by the others."""
+
+TOLD = ("scenario.packaged", "scenario.reading", "scenario.units", "studies.docking_paper.cli")
+"""Modules without JAX in other rooms: what the command is told of before it computes."""
+
+
+def computes(name: str) -> bool:
+    """Return whether a module is one that needs JAX; the faces of rooms need nothing."""
+    package, _, inside = name.partition(".")
+    room, _, file = inside.partition(".")
+    return package == "tethership" and bool(file) and room not in WITHOUT and not inside.startswith(TOLD)
 
 
 def set_up() -> None:
@@ -20,7 +37,7 @@ def set_up() -> None:
     use_compilation_cache()
 
 
-class _OnceImported:
+class _Finder:
     """Finds JAX where Python does, and sets it up before its import ends: no thread sees it as it was."""
 
     def __init__(self, spec: ModuleSpec) -> None:
@@ -35,7 +52,9 @@ class _OnceImported:
         loader.exec_module = run_and_set_up
 
     def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
-        """Return where JAX is; of anything else nothing is known here."""
+        """Return where JAX is; of anything else only what must be there first is known here."""
+        if computes(fullname):
+            import jax  # noqa: F401
         return self._spec if fullname == "jax" else None
 
 
@@ -44,4 +63,4 @@ def set_up_once_imported() -> None:
     if "jax" in sys.modules:
         set_up()
     elif spec := importlib.util.find_spec("jax"):
-        sys.meta_path.insert(0, _OnceImported(spec))
+        sys.meta_path.insert(0, _Finder(spec))
