@@ -3,9 +3,10 @@
 Importing this package must not import JAX, which takes half a second that `tethership --version` does not have. So
 the one place through which every import goes, Python's own, is told what to do.
 
-Two threads must not import JAX at the same time: where one is in the middle of `import jax`, Python lets another begin
-with `jax.numpy`, and either may meet a module half made ("partially initialized", "deadlock detected"). So JAX is
-imported, as a whole, before any module of this package that computes: the second thread then waits for the first.
+Two threads must not import JAX or numpy at the same time: where one is in the middle of `import jax`, Python lets
+another begin with `jax.numpy`, and they meet modules half made ("partially initialized", "deadlock detected") or wait
+for each other for ever. So JAX is imported, as a whole and numpy with it, before any module of this package that uses
+either: the second thread then waits for the first.
 """
 
 import importlib.util
@@ -15,18 +16,33 @@ from typing import Any
 
 from tethership._cache import use_compilation_cache
 
-WITHOUT = ("cli", "results", "view", "explorer")
-"""Rooms without JAX: whatever of them computes does so by the others."""
+COMMAND = ("cli.", "studies.docking_paper.cli.")
+"""Modules of commands begin so: they import what computes when they are called."""
 
-TOLD = ("scenario.packaged", "scenario.reading", "scenario.units", "studies.docking_paper.cli")
-"""Modules without JAX in other rooms: what the command is told of before it computes."""
+PLAIN = (
+    "results.files",
+    "results.limits",
+    "results.lock",
+    "results.metric_names",
+    "results.schema",
+    "scenario.packaged",
+    "scenario.reading",
+    "scenario.units",
+    "studies.docking_paper",
+    "studies.docking_paper.cli",
+)
+"""Other modules with neither JAX nor numpy, and packages that hold such ones."""
+
+COMPUTING = ("cli.between", "studies.docking_paper.cli.figures")
+"""Modules of commands that compute."""
 
 
 def computes(name: str) -> bool:
-    """Return whether a module is one that needs JAX; the faces of rooms need nothing."""
+    """Return whether a module is one that uses JAX or numpy; the faces of rooms use nothing."""
     package, _, inside = name.partition(".")
-    room, _, file = inside.partition(".")
-    return package == "tethership" and bool(file) and room not in WITHOUT and not inside.startswith(TOLD)
+    if package != "tethership" or "." not in inside or inside in PLAIN:
+        return False
+    return not inside.startswith(COMMAND) or inside in COMPUTING
 
 
 def set_up() -> None:
@@ -52,7 +68,7 @@ class _Finder:
         loader.exec_module = run_and_set_up
 
     def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
-        """Return where JAX is; of anything else only what must be there first is known here."""
+        """Return where JAX is; of anything else only that JAX must be there first."""
         if computes(fullname):
             import jax  # noqa: F401
         return self._spec if fullname == "jax" else None
