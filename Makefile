@@ -41,6 +41,7 @@ bench: $(VENV)/.installed-dev
 	$(BIN)/python benchmarks/batch.py
 	$(BIN)/python benchmarks/campaign.py
 	$(BIN)/python benchmarks/replay.py # needs Chromium
+	$(BIN)/python benchmarks/waiting.py # its last rows need Chromium
 
 figures: $(VENV)/.installed-dev
 	$(BIN)/tethership dock --wind 12 --layers rewind,heading --out out/readme

@@ -18,11 +18,11 @@
 Imports point down only. Everything inside is SI and radians; body axes are nose, starboard, down; ground axes north,
 east, down with the origin at the first anchor.
 
-Importing this package switches JAX to double precision, turns on its persistent compilation cache in the user's
-cache folder (unless `JAX_COMPILATION_CACHE_DIR` is set), and has Equinox's run-time checks give NaN
-instead of raising (unless `EQX_ON_ERROR` is set), whichever package was imported first: checks that raise are host
-callbacks, which would keep programs out of that cache. What is not finite is found by this package itself and returned
-as an outcome.
+Importing this package imports neither JAX nor any of its rooms: each name brings what it needs when it is first used.
+JAX, as soon as anything imports it, is switched to double precision and keeps what it compiles in the user's cache
+folder (unless `JAX_COMPILATION_CACHE_DIR` is set); Equinox's run-time checks give NaN instead of raising (unless
+`EQX_ON_ERROR` is set), whichever package was imported first: checks that raise are host callbacks, which would keep
+programs out of that cache. What is not finite is found by this package itself and returned as an outcome.
 """
 
 import pkgutil
@@ -32,14 +32,12 @@ import tethership._interrupt  # noqa: F401 (acts on being imported, before what 
 
 # isort: split
 
-import jax
 import lazy_loader
 
-from tethership._cache import checks_without_callbacks, use_compilation_cache
-from tethership._studies import studied
+from tethership._cache import checks_without_callbacks
+from tethership._jax import set_up_once_imported
 
-jax.config.update("jax_enable_x64", True)
-use_compilation_cache()
+set_up_once_imported()
 checks_without_callbacks()
 
 _OFFERED = ("check_claims", "linear_figure", "plot_linear_figure")
@@ -55,6 +53,8 @@ __all__ = sorted(  # pyright: ignore[reportUnsupportedDunderAll]
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used: the command line then starts without what it does not need."""
     if name in _OFFERED:
+        from tethership._studies import studied
+
         return studied(name)
     if name in _names:
         return _ours(name)

@@ -5,15 +5,15 @@ import sys
 import warnings
 from typing import Any
 
-import jax
-import platformdirs
-
 
 def use_compilation_cache() -> None:
     """Keep compiled programs in the user's cache folder; a folder set by the user is left alone.
 
     `JAX_COMPILATION_CACHE_DIR` names another folder; set empty, it switches the cache off.
     """
+    import jax
+    import platformdirs
+
     if "JAX_COMPILATION_CACHE_DIR" in os.environ or jax.config.values["jax_compilation_cache_dir"]:
         return
     jax.config.update("jax_compilation_cache_dir", platformdirs.user_cache_dir("tethership") + "/jax")

@@ -14,6 +14,8 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from typing import Any, NamedTuple, cast
 
+import xarray as xr
+
 from tethership._extras import needs
 from tethership._version import __version__
 from tethership.campaign.plan import Batch, Plan
@@ -103,9 +105,15 @@ def _result(future: Future) -> Any:
 @contextmanager
 def in_this_process() -> Iterator[Hands]:
     """Fly two batches at once on two threads: JAX lets go of Python's lock."""
+    _load_for_threads()
     count = min(2, os.cpu_count() or 1)
     with _ended(ThreadPoolExecutor(count)) as pool:
         yield Hands(pool, count)
+
+
+def _load_for_threads() -> None:
+    """Have xarray import what it looks for with its first dataset (Dask, pint): threads would meet it half made."""
+    xr.Dataset({"value": ("time", [0.0])}, {"time": [0.0], "name": ["text"]}).mean()
 
 
 @contextmanager

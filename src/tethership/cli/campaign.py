@@ -24,7 +24,6 @@ from tethership.cli.progress import Pace, Report, progress_bar
 from tethership.cli.result import Result, show
 from tethership.cli.tables import CsvOption, Row, Table
 from tethership.errors import ConfigError, SolveError
-from tethership.scenario import check_title
 
 EXAMPLE = "Example: tethership campaign gusts --samples 1000 --workers 2"
 
@@ -86,6 +85,8 @@ def campaign(
 
 def _own_folder(name: str) -> Path:
     """Return the folder of a campaign that was given none, by the name of its file."""
+    from tethership.scenario import check_title
+
     try:
         return Path("campaigns") / check_title(Path(name).stem)
     except ValueError as error:

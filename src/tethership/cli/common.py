@@ -6,7 +6,7 @@ import platform
 import time
 from collections.abc import Collection
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -15,7 +15,10 @@ from tethership.cli.completion import complete_formulation, complete_line, compl
 from tethership.cli.tables import check_csv
 from tethership.errors import ConfigError, shown, suggestion
 from tethership.results import check_writable
-from tethership.scenario import LINES, Scenario, load_scenario, number_with_unit, parse_json
+from tethership.scenario import parse_json
+
+if TYPE_CHECKING:
+    from tethership.scenario import Scenario
 
 WRONG_INPUT = 2
 """Exit code for wrong input."""
@@ -71,7 +74,7 @@ def chosen_scenario(
     changes: list[str] | None,
     line: str | None = None,
     trust: bool = False,
-) -> Scenario:
+) -> "Scenario":
     """Return the scenario with the flags applied; a flag wins over the file.
 
     Parameters
@@ -94,6 +97,8 @@ def chosen_scenario(
     ConfigError
         As `load_scenario`, or a change that is not `key=value`.
     """
+    from tethership.scenario import load_scenario
+
     if wind is not None and "wind.speed" in parsed_changes(changes):
         raise ConfigError("--wind and --set wind.speed both say what the wind is; give one of them")
     scenario = load_scenario(name, flag_changes(wind, formulation, changes), trust)
@@ -115,6 +120,8 @@ def line_change(line: str | None) -> dict[str, Any]:
     """Return the change that gives every cable a model of its line; raises ConfigError for an unknown one."""
     if line is None:
         return {}
+    from tethership.scenario import LINES
+
     models = tuple(LINES.values())
     if line not in models:
         raise ConfigError(f"--line {shown(line)} is no line{suggestion(line, models)} Allowed: {', '.join(models)}")
@@ -133,6 +140,8 @@ def pair(value: complex) -> list[float]:
 
 def _change(text: str) -> tuple[str, Any]:
     """Return key and value of `key=value`; JSON, a number with a unit, or else a word."""
+    from tethership.scenario import number_with_unit
+
     key, equals, value = text.partition("=")
     if not equals or not key:
         raise ConfigError(f"--set {shown(text)} is no change; write --set key=value, e.g. --set wind.speed=9")

@@ -5,7 +5,7 @@ Each returns what begins with what is typed; a path is completed by the shell it
 
 from collections.abc import Callable, Iterable
 
-from tethership.scenario import ALIASES, list_packaged, list_parameters, load_scenario
+from tethership.scenario import list_packaged
 
 
 def _offered(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]:
@@ -17,15 +17,20 @@ def _offered(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]:
     return complete
 
 
+def _parameters() -> Iterable[str]:
+    """Return what --set takes: the packaged docking's parameters stand for those of any scenario."""
+    from tethership.scenario import ALIASES, list_parameters, load_scenario
+
+    return (f"{name}=" for name in (*ALIASES, *list_parameters(load_scenario("docking").config)))
+
+
 complete_scenario = _offered(lambda: list_packaged()["scenarios"])
 complete_campaign = _offered(lambda: list_packaged()["campaigns"])
 complete_solver = _offered(lambda: list_packaged()["solvers"])
 complete_formulation = _offered(lambda: ("consistent", "published"))
 complete_line = _offered(lambda: ("catenary", "published"))
 complete_kind = _offered(lambda: (*list_packaged(), "outputs", "parameters"))
-complete_parameter = _offered(
-    lambda: (f"{name}=" for name in (*ALIASES, *list_parameters(load_scenario("docking").config)))
-)
+complete_parameter = _offered(_parameters)
 
 
 def complete_layers(incomplete: str) -> list[str]:

@@ -22,7 +22,6 @@ from tethership.cli.points import trimmed_start
 from tethership.cli.progress import flying
 from tethership.cli.tables import CsvOption
 from tethership.errors import ConfigError
-from tethership.scenario import read_solver
 
 __all__ = ["dock", "summary"]
 
@@ -49,6 +48,8 @@ def dock(
     Writes flight.nc (labelled data with the full input), docking.png (the paper's four panels) and replay.html (the
     flight in space, opens in a browser without a network) into --out.
     """
+    from tethership.scenario import read_solver
+
     given = (scenario, wind, formulation, line, layers, changes, no_sas, solver)
     if from_ is not None and given != ("docking", None, None, None, None, None, False, "adaptive"):
         raise ConfigError(

@@ -11,7 +11,7 @@ from tethership.cli.completion import complete_scenario
 from tethership.cli.result import Result, show
 from tethership.errors import ConfigError
 from tethership.results import write_atomically
-from tethership.scenario import check_file, check_title, packaged_text, read_document
+from tethership.scenario import packaged_text
 
 VALIDATE_EXAMPLE = "Example: tethership validate my_docking.toml"
 NEW_EXAMPLE = "Example: tethership new my_docking"
@@ -28,6 +28,8 @@ def validate(
 
 def _checked(file: str) -> str:
     """Return what a file is after checking all of it; a campaign's cases are drawn, none is flown."""
+    from tethership.scenario import check_file, read_document
+
     if "vary" not in read_document("scenarios", file):
         return check_file(file)
     from tethership.campaign import make_plan
@@ -45,6 +47,8 @@ def new(
     json: JsonOption = False,
 ) -> None:
     """Write a commented copy of a packaged scenario and its vehicle, to edit."""
+    from tethership.scenario import check_title
+
     given = Path(name.removesuffix(".toml"))
     try:
         check_title(given.name)

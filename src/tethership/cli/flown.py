@@ -10,9 +10,9 @@ from tethership.cli.progress import flying, stage
 from tethership.cli.result import Result, show
 from tethership.cli.tables import Row, Table
 from tethership.results import write_together
-from tethership.scenario import Scenario
 
 if TYPE_CHECKING:
+    from tethership.scenario import Scenario
     from tethership.simulation import Flight
 
 LayersOption = Annotated[
@@ -34,7 +34,7 @@ def split(layers: str) -> tuple[str, ...]:
     return () if names == ("none",) else names
 
 
-def again(path: Path, trust: bool) -> tuple[Scenario, "Flight"]:
+def again(path: Path, trust: bool) -> tuple["Scenario", "Flight"]:
     """Return scenario and flight of a stored input."""
     from tethership.simulation import fly_again
 
@@ -43,7 +43,7 @@ def again(path: Path, trust: bool) -> tuple[Scenario, "Flight"]:
 
 
 def tell(
-    scenario: Scenario, flight: "Flight", trim_outcome: str, out: Path, picture: str, csv: Path | None, json: bool
+    scenario: "Scenario", flight: "Flight", trim_outcome: str, out: Path, picture: str, csv: Path | None, json: bool
 ) -> None:
     """Write a flight's files, print its numbers or its JSON, and exit with 3 where it is no answer.
 
@@ -107,7 +107,7 @@ def _replay(flight: "Flight") -> str | None:
         return replay_text(flight)
 
 
-def summary(scenario: Scenario, flight: "Flight") -> dict[str, Any]:
+def summary(scenario: "Scenario", flight: "Flight") -> dict[str, Any]:
     """Return the keys that scripts may rely on, SI, θ_rms in degrees."""
     from tethership.scenario import record_warning
     from tethership.simulation import quasi_static_warning

@@ -22,7 +22,6 @@ from tethership.cli.points import trimmed_start
 from tethership.cli.progress import flying
 from tethership.cli.tables import CsvOption
 from tethership.errors import ConfigError
-from tethership.scenario import read_solver
 
 EXAMPLE = "Example: tethership fly hover --time 30 --set 'gusts=[]' --out flights/hover"
 
@@ -54,6 +53,8 @@ def fly(
 
     Writes flight.nc, flight.png and replay.html into --out. dock --from flies a flight.nc again.
     """
+    from tethership.scenario import read_solver
+
     if time is not None and not 0.0 < time <= LONGEST:
         raise ConfigError(f"--time {time:g} is no time to fly; give a number of seconds above 0, at most {LONGEST:g}")
     loaded = chosen_scenario(scenario, wind, formulation, changes, line, trust)

@@ -10,7 +10,7 @@ from tethership.cli.result import Result, show
 from tethership.cli.tables import Cell, CsvOption, Table
 from tethership.errors import ConfigError, shown, suggestion
 from tethership.results import OWN_VARIABLES, VARIABLES
-from tethership.scenario import KINDS, describe_packaged, list_parameters, load_scenario
+from tethership.scenario import KINDS, describe_packaged
 
 EXAMPLE = "Example: tethership list parameters mine.toml --csv parameters.csv"
 
@@ -69,6 +69,8 @@ def _outputs() -> dict[str, dict[str, Any]]:
 
 def _parameters(scenario: str) -> dict[str, dict[str, Any]]:
     """Return every number of a scenario with its value and unit."""
+    from tethership.scenario import list_parameters, load_scenario
+
     found = list_parameters(load_scenario(scenario).config)
     return {name: {"value": of.value, "unit": of.unit} for name, of in found.items()}
 

@@ -8,10 +8,10 @@ import typer
 from tethership.cli.progress import stage
 from tethership.cli.result import Result, show
 from tethership.cli.tables import Row
-from tethership.scenario import Scenario
 
 if TYPE_CHECKING:
     from tethership.analysis import TrimOutcome, TrimPoint
+    from tethership.scenario import Scenario
 
 
 def point_keys(point: "TrimPoint") -> dict[str, Any]:
@@ -39,7 +39,7 @@ def clearance_line(hull: float | None, cable: float | None, least: str = "") -> 
     return f"  {least}{told}" if told else ""
 
 
-def trimmed_start(scenario: Scenario, as_json: bool) -> "TrimPoint":
+def trimmed_start(scenario: "Scenario", as_json: bool) -> "TrimPoint":
     """Return the trim from which a ship can be flown, or say why there is none and exit."""
     point = _trimmed(scenario, as_json, lambda outcome: outcome.is_start)
     if point.saturated:
@@ -47,12 +47,12 @@ def trimmed_start(scenario: Scenario, as_json: bool) -> "TrimPoint":
     return point
 
 
-def balanced(scenario: Scenario, as_json: bool) -> "TrimPoint":
+def balanced(scenario: "Scenario", as_json: bool) -> "TrimPoint":
     """Return the trim about which a ship can be linearised, or say why there is none and exit."""
     return _trimmed(scenario, as_json, lambda outcome: outcome.is_balanced)
 
 
-def _trimmed(scenario: Scenario, as_json: bool, serves: Callable[["TrimOutcome"], bool]) -> "TrimPoint":
+def _trimmed(scenario: "Scenario", as_json: bool, serves: Callable[["TrimOutcome"], bool]) -> "TrimPoint":
     """Return the trim if its outcome serves, else say that there is no answer and exit."""
     from tethership.analysis import trim
 

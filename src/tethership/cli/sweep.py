@@ -5,10 +5,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import numpy as np
 import typer
 
-from tethership._studies import studied
 from tethership.cli.common import (
     FormulationOption,
     JsonOption,
@@ -30,10 +28,13 @@ from tethership.cli.result import Result, show
 from tethership.cli.tables import CsvOption, Table
 from tethership.errors import ConfigError, shown
 from tethership.results import write_together
-from tethership.scenario import Scenario, number_with_unit, parse_json
+from tethership.scenario import parse_json
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from tethership.analysis import Sweep
+    from tethership.scenario import Scenario
 
 EXAMPLE = "Example: tethership sweep --over wind=6:12:13 --out loci"
 
@@ -68,6 +69,7 @@ def sweep(
 
     Writes a picture and an interactive page into --out. With --figure and no --formulation, both formulations.
     """
+    from tethership._studies import studied
     from tethership.analysis.loci import sweep_warnings
 
     if (over is None) == (figure is None):
@@ -95,7 +97,7 @@ def sweep(
 
 
 def _swept(
-    scenario: Scenario, axes: list[dict[str, np.ndarray]], out: Path, loop: str = "open"
+    scenario: "Scenario", axes: list[dict[str, "np.ndarray"]], out: Path, loop: str = "open"
 ) -> tuple[dict[str, Any], list["Sweep"]]:
     """Return the result of a sweep; writes root_locus.png and root_locus.html."""
     from tethership.analysis import sweep as compute
@@ -121,6 +123,8 @@ def _swept(
 
 def summary(found: "Sweep") -> dict[str, Any]:
     """Return the keys that scripts may rely on, SI; angles among the parameters in degrees."""
+    import numpy as np
+
     from tethership.analysis.loci import sweep_warnings
 
     first = next(iter(found.values))
@@ -176,9 +180,9 @@ def _table(found: list["Sweep"]) -> Table:
     return Table(rows, columns=(*names, "track", "real", "imaginary", "outcome"))
 
 
-def _axis(scenario: Scenario, text: str) -> dict[str, np.ndarray]:
+def _axis(scenario: "Scenario", text: str) -> dict[str, "np.ndarray"]:
     """Return the parameters of one --over and their values [SI]."""
-    axis: dict[str, np.ndarray] = {}
+    axis: dict[str, "np.ndarray"] = {}
     for part in _parts(text):
         name, equals, values = part.partition("=")
         if not equals or not name or not values:
@@ -201,16 +205,20 @@ def _parts(text: str) -> list[str]:
     return parts
 
 
-def _listed(part: str, values: str) -> np.ndarray:
+def _listed(part: str, values: str) -> "np.ndarray":
     """Return the values of name=[v1,v2,…]."""
+    import numpy as np
+
     try:
         return np.array(parse_json(values, f"--over {shown(part)}"), dtype=float)
     except (ValueError, TypeError) as error:
         raise ConfigError(f"--over {shown(part)} is no list of numbers; write e.g. wind=[6,9,12]") from error
 
 
-def _range(scenario: Scenario, name: str, text: str) -> np.ndarray:
+def _range(scenario: "Scenario", name: str, text: str) -> "np.ndarray":
     """Return the values of from:to:points, the ends with units if given."""
+    import numpy as np
+
     pieces = text.split(":")
     if len(pieces) not in (2, 3):
         raise ConfigError(f"--over {name}={text}: write from:to:points, e.g. {name}=6:12:13")
@@ -238,9 +246,9 @@ def _points(name: str, text: str, typed: str) -> int:
     return count
 
 
-def _number(scenario: Scenario, name: str, text: str) -> float:
+def _number(scenario: "Scenario", name: str, text: str) -> float:
     """Return one end of a range [SI]; a unit is converted to that of the parameter."""
-    from tethership.scenario import SI_UNIT, converted, find_parameter, list_parameters
+    from tethership.scenario import SI_UNIT, converted, find_parameter, list_parameters, number_with_unit
 
     parameter = find_parameter(list_parameters(scenario.config), name, scenario.name)
     with_unit = number_with_unit(text)
@@ -252,14 +260,18 @@ def _number(scenario: Scenario, name: str, text: str) -> float:
         raise ConfigError(f"--over {name}: {shown(text)} is no number for an end: {error}") from error
 
 
-def _least(heights: np.ndarray) -> float | None:
+def _least(heights: "np.ndarray") -> float | None:
     """Return the least of some heights [m], None where none is known."""
+    import numpy as np
+
     known = heights[np.isfinite(heights)]
     return float(known.min()) if len(known) else None
 
 
 def _lacking(found: "Sweep", point: int) -> str:
     """Return by how much a point fails to be a trim."""
+    import numpy as np
+
     match found.outcomes[point].name:
         case "no_equilibrium":
             left = np.abs(found.residual[point]).max()

@@ -2,7 +2,6 @@
 
 from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
 
 from tethership.cli.common import (
@@ -23,10 +22,10 @@ from tethership.cli.progress import stage
 from tethership.cli.result import Result, show
 from tethership.cli.tables import CsvOption, Row, Table
 from tethership.results import write_atomically
-from tethership.scenario import Scenario
 
 if TYPE_CHECKING:
     from tethership.analysis import TrimPoint
+    from tethership.scenario import Scenario
 
 EXAMPLE = "Example: tethership trim aerostat --wind 10 --json"
 
@@ -54,6 +53,8 @@ def trim(
 
     With --out the result is also written there as trim.json.
     """
+    import numpy as np
+
     from tethership.analysis import TrimOutcome
     from tethership.analysis import trim as solve
     from tethership.plant import STATE_NAMES
@@ -85,8 +86,10 @@ def trim(
     show(Result(document, tables=[table], warnings=point.warnings, answered=met), json, csv)
 
 
-def _rows(loaded: Scenario, point: "TrimPoint", state: dict[str, float]) -> list[Row]:
+def _rows(loaded: "Scenario", point: "TrimPoint", state: dict[str, float]) -> list[Row]:
     """Return throttles, deflections (of a ship that moves its fins), tensions and states as rows of a table."""
+    import numpy as np
+
     throttles = zip(loaded.config.vehicle.thrusters, point.command.throttle, strict=True)
     angles = np.asarray(point.command.deflection)
     deflections = zip(loaded.config.vehicle.fins, angles, strict=True) if angles.any() else ()

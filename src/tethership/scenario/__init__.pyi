@@ -10,14 +10,10 @@ from .changes import is_share as is_share
 from .control_schema import LAYERS as LAYERS
 from .control_schema import check_layers as check_layers
 from .laws import LAWS as LAWS
-from .load import KINDS as KINDS
 from .load import Scenario as Scenario
 from .load import check_file as check_file
-from .load import describe_packaged as describe_packaged
 from .load import from_document as from_document
-from .load import list_packaged as list_packaged
 from .load import load_scenario as load_scenario
-from .load import packaged_text as packaged_text
 from .load import read_document as read_document
 from .load import read_solver as read_solver
 from .load import validated as validated
@@ -25,6 +21,10 @@ from .names import Title as Title
 from .names import check_apart as check_apart
 from .names import check_title as check_title
 from .own_code import find_beside as find_beside
+from .packaged import KINDS as KINDS
+from .packaged import describe_packaged as describe_packaged
+from .packaged import list_packaged as list_packaged
+from .packaged import packaged_text as packaged_text
 from .parameters import ALIASES as ALIASES
 from .parameters import Parameter as Parameter
 from .parameters import check_values as check_values

@@ -24,7 +24,6 @@ from tethership.physics.turbulence import (
     REFERENCE_HEIGHT,
     SPECTRA,
     AbstractFluctuation,
-    MeasuredHistory,
     Scales,
     low_altitude_scales,
     make_turbulence,
@@ -92,6 +91,8 @@ def _fluctuations(
     """Return what the wind does about its mean."""
     found: list[AbstractFluctuation] = []
     if isinstance(config.wind, MeasuredWindConfig):
+        from tethership.physics.turbulence import MeasuredHistory  # diffrax takes a quarter of a second to import
+
         velocities = jnp.asarray(config.wind.velocities) - wind.velocity(jnp.zeros(3))
         found.append(MeasuredHistory.through(jnp.asarray(config.wind.times), velocities))
     if config.turbulence is not None:

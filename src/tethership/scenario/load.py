@@ -4,14 +4,13 @@ import copy
 import dataclasses
 import warnings
 from collections.abc import Iterable, Mapping
-from importlib import resources
 from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
 from tethership.control import LayeredLaw
-from tethership.errors import ConfigError, TethershipWarning, shown, suggestion
+from tethership.errors import ConfigError, TethershipWarning, shown
 from tethership.plant import AbstractPart, TetheredAirship
 from tethership.scenario.build import assemble
 from tethership.scenario.changes import Document, change
@@ -19,6 +18,8 @@ from tethership.scenario.control_schema import check_layers
 from tethership.scenario.laws import build_law
 from tethership.scenario.messages import first_problem
 from tethership.scenario.own_code import as_entry, find_beside
+from tethership.scenario.packaged import list_packaged as list_packaged
+from tethership.scenario.packaged import packaged_text as packaged_text
 from tethership.scenario.quantity import Table
 from tethership.scenario.reading import parse_toml, read_text
 from tethership.scenario.schema import ScenarioConfig
@@ -137,38 +138,6 @@ def _check_trust(name: str, code: list[str], trusted: bool) -> None:
 
 MOST_BASES = 8
 """Scenarios that may stand on one another."""
-
-KINDS = ("scenarios", "vehicles", "solvers", "campaigns")
-"""What is packaged, by folder."""
-
-
-def _packaged(folder: str) -> dict[str, Any]:
-    """Return the packaged files of a folder of `data`, by name."""
-    root = resources.files("tethership") / "data" / folder
-    return {item.name[:-5]: item for item in root.iterdir() if item.name.endswith(".toml")}
-
-
-def list_packaged() -> dict[str, list[str]]:
-    """Return the names of the packaged scenarios, vehicles, solvers and campaigns.
-
-    Examples
-    --------
-    >>> import tethership as ts
-    >>> ts.list_packaged()["solvers"]
-    ['adaptive', 'fixed', 'tight']
-    """
-    return {kind: sorted(_packaged(kind)) for kind in KINDS}
-
-
-def packaged_text(folder: str, name: str) -> str:
-    """Return the text of a packaged file, or raise ConfigError that offers the nearest name."""
-    files = _packaged(folder)
-    if name in files:
-        return files[name].read_text(encoding="utf-8")
-    raise ConfigError(
-        f"no {folder[:-1]} {shown(name)}{suggestion(name, files)} Packaged: {', '.join(sorted(files))}; "
-        "a file of your own ends in .toml"
-    )
 
 
 def _read(folder: str, name: str, base: Path | None = None) -> tuple[Document, str]:
@@ -321,15 +290,6 @@ def read_solver(name: str = "adaptive") -> SolverConfig:
     """
     document, origin = _read("solvers", name)
     return validated(SolverConfig, document, origin)
-
-
-def describe_packaged() -> dict[str, dict[str, str]]:
-    """Return what is packaged: kind → name → one line."""
-    found: dict[str, dict[str, str]] = {}
-    for kind in KINDS:
-        documents = {name: parse_toml(packaged_text(kind, name), name) for name in sorted(_packaged(kind))}
-        found[kind] = {name: d.get("description") or d.get("title", "") for name, d in documents.items()}
-    return found
 
 
 def check_file(name: str) -> str:

@@ -8,16 +8,19 @@ import functools
 import math
 import re
 from collections.abc import Iterable
-from typing import Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 import jax
 import numpy as np
-import pint
 from pydantic import BaseModel as PydanticModel
 from pydantic import ConfigDict, GetCoreSchemaHandler, model_validator
 from pydantic_core import core_schema
 
 from tethership.errors import shown, suggestion
+from tethership.scenario.units import factor, to_base
+
+if TYPE_CHECKING:
+    import pint
 
 NUMBER_WITH_UNIT = re.compile(
     r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>(?![eE][-+]?\d)[A-Za-z].*)"
@@ -90,8 +93,10 @@ def _tuples(value: Any) -> Any:
 
 
 @functools.cache
-def unit_registry() -> pint.UnitRegistry:
+def unit_registry() -> "pint.UnitRegistry":
     """Return the one registry of units; building it takes a third of a second."""
+    import pint
+
     return pint.UnitRegistry()
 
 
@@ -120,18 +125,25 @@ def in_unit(value: float, unit: str, wanted: str) -> float:
     if unit == wanted:
         return converted(value, SI_UNIT, "1")
     if unit == SI_UNIT:
-        base = unit_registry().Quantity(1.0, wanted).to_base_units()
-        return converted(value, SI_UNIT, "1") / float(base.magnitude)
+        base = to_base(wanted)
+        if base is None:
+            base = float(unit_registry().Quantity(1.0, wanted).to_base_units().magnitude)
+        return converted(value, SI_UNIT, "1") / base
     return converted(value, unit, wanted)
 
 
 def _by_unit(value: float, unit: str, si_unit: str) -> float:
-    """Return a number in the SI unit by way of pint."""
+    """Return a number in the SI unit, by way of pint where the unit is no usual one."""
     if len(unit) > LONGEST_UNIT or not UNIT.fullmatch(unit):
         raise ValueError(f"the unit is {shown(unit)}, which is no unit: letters, * / ^, exponents up to 9")
     if (si_unit == "rad" and unit not in ANGLE_UNITS) or (si_unit == "1" and unit in ANGLE_UNITS):
         wanted = "deg or rad" if si_unit == "rad" else "1"
         raise ValueError(f"the unit is {unit!r}, which is no {si_unit!r}; give {wanted}")
+    times = factor(unit, si_unit)
+    if times is not None:
+        return value * times
+    import pint
+
     pint_name = {"1": "dimensionless", "-": "dimensionless"}
     try:
         return float(unit_registry().Quantity(value, pint_name.get(unit, unit)).m_as(pint_name.get(si_unit, si_unit)))

@@ -10,7 +10,6 @@ from tethership.errors import ConfigError
 from tethership.scenario.changes import Document
 from tethership.scenario.messages import first_problem
 from tethership.scenario.quantity import Metres
-from tethership.scenario.wind_record import read_record
 
 
 def expand_wind_file(document: Document, base: Path | None, origin: str) -> None:
@@ -45,6 +44,8 @@ def expand_wind_file(document: Document, base: Path | None, origin: str) -> None
         height = TypeAdapter(Metres).validate_python(wind["height"]) if "height" in wind else None
     except ValidationError as error:
         raise ConfigError(first_problem(error, f"{origin}: wind.height", wind["height"])) from error
+    from tethership.scenario.wind_record import read_record
+
     given = Path(wind["file"])
     record = read_record(given if base is None or given.is_absolute() else base / given, height)
     north, east, _ = record.mean

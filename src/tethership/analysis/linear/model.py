@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.linalg
-import xarray as xr
 
 from tethership._extras import needs
 from tethership._version import __version__
 from tethership.errors import ConfigError, suggestion
 from tethership.plant import LENGTH, WIND_INPUTS
-from tethership.results import FORMAT, LINEAR_MODEL, netcdf, run_id
+from tethership.results import FORMAT, LINEAR_MODEL
 
 if TYPE_CHECKING:
     import control
+    import xarray as xr
 
     from tethership.analysis.modes.modes import Modes
 
@@ -249,8 +249,10 @@ class LinearModel:
             **({"dt": self.sample_time} if self.sample_time else {}),
         )
 
-    def to_dataset(self) -> xr.Dataset:
+    def to_dataset(self) -> "xr.Dataset":
         """Return the model as a labelled dataset."""
+        import xarray as xr
+
         other = list(self.states)
         variables = {
             "A": (("state", "of_state"), self.A, {"long_name": "state matrix"}),
@@ -282,19 +284,27 @@ class LinearModel:
     @property
     def run(self) -> str:
         """Id of this model in its file and pictures: a digest of its numbers and input."""
+        from tethership.results import run_id
+
         return run_id(self.to_dataset(), LINEAR_MODEL.own)
 
     def content(self) -> bytes:
         """Return the bytes of the model's netCDF file."""
+        from tethership.results import netcdf
+
         return netcdf.content(self.to_dataset(), LINEAR_MODEL)
 
     def save(self, path: str | Path) -> None:
         """Write the model to netCDF; raises ConfigError where that cannot be."""
+        from tethership.results import netcdf
+
         netcdf.write(self.to_dataset(), Path(path), LINEAR_MODEL)
 
     @classmethod
     def load(cls, path: str | Path) -> "LinearModel":
         """Return the model of a file; raises ConfigError where it is none."""
+        from tethership.results import netcdf
+
         data = netcdf.read(Path(path), LINEAR_MODEL)
         old = not set(map(str, data.variables)) & set(MEASURED)
         attributes = _checked(data, str(path), SHAPES if old else SHAPES | MEASURED_SHAPES)
@@ -326,7 +336,7 @@ class LinearModel:
         )
 
 
-def _checked(data: xr.Dataset, origin: str, shapes: dict[str, tuple[str, ...]]) -> dict[str, Any]:
+def _checked(data: "xr.Dataset", origin: str, shapes: dict[str, tuple[str, ...]]) -> dict[str, Any]:
     """Return the attributes of a file's dataset, or raise ConfigError where it is no linear model of these shapes."""
     wanted = {*shapes, *WORDS, *(MEASURED if "C" in shapes else ())}
     missing = wanted - set(map(str, data.variables))

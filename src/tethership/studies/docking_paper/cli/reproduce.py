@@ -12,7 +12,7 @@ from tethership.cli.progress import progress_bar
 from tethership.cli.result import Result, show
 from tethership.cli.tables import CsvOption, Table
 from tethership.errors import ConfigError, suggestion
-from tethership.results import held, write_atomically
+from tethership.results import write_atomically
 
 if TYPE_CHECKING:
     from tethership.studies.docking_paper.jobs import Job, Settings
@@ -63,6 +63,7 @@ def reproduce(
     --out. A second run takes what is unchanged from there. With --only the report also keeps the parts that stand in
     --out already, and says what it lacks.
     """
+    from tethership.results import held
     from tethership.studies.docking_paper.jobs import Settings, load_part, run_jobs
     from tethership.studies.docking_paper.view.report import write_study
 
