@@ -1,0 +1,3 @@
+from .not_compiled import NotCompiled as NotCompiled
+from .program import Program as Program
+from .program import Taken as Taken
