@@ -18,6 +18,7 @@ from pathlib import Path
 
 import pytest
 
+import tethership.explorer
 from tethership.cli import explore
 from tethership.explorer import connections
 from tethership.explorer.server import Explorer
@@ -123,6 +124,7 @@ def test_a_browser_is_not_told_the_token_where_others_can_read_it(tmp_path, monk
         explorer._server.server_close()
         explorer.desk.close()
 
+    assert tethership.explorer.serve_until_signal is not serve  # looked up by another test of this process or not
     monkeypatch.setattr("tethership.explorer.server.Worker", Idle)
     monkeypatch.setattr("tethership.explorer.server.serve_until_signal", serve)
     explore.explore("docking", 0, "127.0.0.1", tmp_path)
