@@ -22,8 +22,8 @@ from typing import NamedTuple
 from tethership.lanes.not_compiled import NotCompiled
 
 OPTIONS = (
-    ["-std=c++17", "-O2", "-shared", "-fPIC", "-fvisibility=hidden", "-w", "-ffp-contract=fast"]
-    + ["-fno-math-errno", "-fno-trapping-math", "-fassociative-math", "-fno-signed-zeros", "-freciprocal-math"]
+    *("-std=c++17", "-O2", "-shared", "-fPIC", "-fvisibility=hidden", "-w", "-ffp-contract=fast", "-fno-math-errno"),
+    *("-fno-trapping-math", "-fassociative-math", "-fno-signed-zeros", "-freciprocal-math"),
 )
 """Sums may be reordered and multiply-add fused; NaN and infinity are kept as they are."""
 
@@ -95,10 +95,23 @@ def options(width: int) -> list[str]:
     machine = [native] if platform.machine() in ("x86_64", "AMD64") else []
     library, version = platform.libc_ver()
     vectorised = library == "glibc" and platform.machine() == "x86_64" and bool(machine)
-    if not vectorised or not ("avx2" in processor()):
+    if not vectorised or "avx2" not in processor():
         return [*OPTIONS, *machine]
     major, minor = (int(part) for part in version.split(".")[:2])
     return [*OPTIONS, *machine, f"-DLIBMVEC={100 * major + minor}"]
+
+
+def identity(width: int | None = None, compiler: str | None = None) -> str:
+    """Return what tells the numbers of one machine's lanes from another's: width, compiler and processor.
+
+    Raises
+    ------
+    NotCompiled
+        There is no compiler.
+    """
+    found, width = find_compiler(compiler if compiler is not None else os.environ.get("CXX")), width or widest()
+    told = [*found.command, found.version, *options(width), processor()]
+    return f"lanes of {width}, {hashlib.sha256(chr(0).join(told).encode()).hexdigest()[:12]}"
 
 
 def library(source: str, width: int, folder: Path | None, compiler: str | None = None) -> ctypes.CDLL:

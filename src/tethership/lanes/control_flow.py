@@ -10,11 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from jax.extend.core import ClosedJaxpr, Jaxpr, Literal
 
-from tethership.lanes import arithmetic
+from tethership.lanes import arithmetic, moves
 from tethership.lanes.arrays import Operand, Table, each, filled, lifted
 from tethership.lanes.not_compiled import NotCompiled
 from tethership.lanes.rules import RULES, gathered, rule
 from tethership.lanes.scalars import FALSE, MASK, Block, Branch, Graph, Loop, Scalar, constant
+
+assert moves.MOVES  # its rules are among those that the walk knows
 
 MOST_ROUNDS = 64
 """Longest loop of known length that is written out."""
@@ -140,10 +142,7 @@ def _round(
     carried = [
         filled(
             array.shape,
-            [
-                x if (n, place) in unchanged else graph.changing(x.kind, depth)
-                for place, x in enumerate(array.ravel())
-            ],
+            [x if (n, place) in unchanged else graph.changing(x.kind, depth) for place, x in enumerate(array.ravel())],
         )
         for n, array in enumerate(first)
     ]

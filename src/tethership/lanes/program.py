@@ -21,10 +21,9 @@ from tethership.lanes import arithmetic
 from tethership.lanes.arrays import LARGE, Operand, Table, filled, lifted
 from tethership.lanes.compiler import library, widest
 from tethership.lanes.control_flow import walk
-from tethership.lanes.not_compiled import NotCompiled
 from tethership.lanes.render import program as rendered
 from tethership.lanes.rules import gathered
-from tethership.lanes.scalars import MASK, Graph, Scalar
+from tethership.lanes.scalars import Graph, Scalar
 
 _Doubles = ctypes.POINTER(ctypes.c_double)
 
@@ -128,8 +127,8 @@ class Program:
         flights = np.shape(jax.tree.leaves(own)[0])[-1]
         own_leaves = self._checked(own, self._own_tree, self._own_shapes, flights)
         padded = -(-flights // self.width) * self.width
-        numbers = [leaf.ravel() for leaf, shape in zip(shared_leaves, self._shared_shapes) if np.prod(shape) <= LARGE]
-        tables = [leaf for leaf, shape in zip(shared_leaves, self._shared_shapes) if np.prod(shape) > LARGE]
+        numbers = [leaf.ravel() for leaf in shared_leaves if leaf.size <= LARGE]
+        tables = [leaf for leaf in shared_leaves if leaf.size > LARGE]
         rows = [leaf.reshape(-1, flights) for leaf in own_leaves]
         small = [row for row in rows if len(row) <= LARGE]
         tables += [_padded([row], padded) for row in rows if len(row) > LARGE]
@@ -208,6 +207,3 @@ def _together(work: Callable[[], None], threads: int) -> None:
     work()
     for thread in others:
         thread.join()
-
-
-__all__ = ["MASK", "NotCompiled", "Program", "Taken"]

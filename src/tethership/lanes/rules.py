@@ -5,29 +5,23 @@ float64, exact below 2⁵³, so that only division and remainder tell them from 
 walk itself, are in `control_flow`.
 """
 
+import itertools
 import math
 from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-import jax.numpy as jnp
 import numpy as np
 
 from tethership.lanes import arithmetic
 from tethership.lanes.arrays import Operand, Table, each, filled, lifted, reduced
 from tethership.lanes.not_compiled import NotCompiled
-from tethership.lanes.scalars import MASK, NUMBER, ZERO, Graph, Scalar, constant
+from tethership.lanes.scalars import NUMBER, ZERO, Graph, Scalar, constant
 
 Rule = Callable[[Graph, Any, list[Operand]], list[Operand]]
 
 RULES: dict[str, Rule] = {}
 """Rule of each primitive that is known, by the primitive's name."""
-
-MOVES = (
-    ["slice", "squeeze", "broadcast_in_dim", "concatenate", "transpose", "reshape", "stack", "unstack", "expand_dims"]
-    + ["rev", "split", "copy", "copy_p", "stop_gradient", "pad"]
-)
-"""Primitives that only move numbers."""
 
 
 def rule(*names: str) -> Callable[[Rule], Rule]:
@@ -127,7 +121,7 @@ def _rem(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand]:
 @rule("and", "or", "xor", "not")
 def _logic(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand]:
     name = equation.primitive.name
-    if dtype(equation.outvars[0]) != bool:
+    if dtype(equation.outvars[0]).kind != "b":
         raise NotCompiled(f"the primitive {name!r} on whole numbers is not known")
     functions = {"and": arithmetic.both, "or": arithmetic.either, "xor": arithmetic.exclusive, "not": arithmetic.invert}
     return scalarwise(functions[name])(graph, equation, operands)
@@ -149,13 +143,13 @@ def _rsqrt(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand
 @rule("select_n")
 def _select(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand]:
     which, *cases = (gathered(graph, operand) for operand in operands)
-    if len(cases) > 2 or dtype(equation.invars[0]) != bool:
+    if len(cases) > 2 or dtype(equation.invars[0]).kind != "b":
         return [each(partial(_chosen, graph), which, *cases)]
     return [each(partial(arithmetic.select, graph), which, *cases)]
 
 
 def _chosen(graph: Graph, which: Scalar, *cases: Scalar) -> Scalar:
-    """Return the case of a number 0, 1, …"""
+    """Return the case that a number 0, 1, … names."""
     found = cases[0]
     for place, case in enumerate(cases[1:], 1):
         found = arithmetic.select(graph, arithmetic.compare(graph, "eq", which, constant(float(place))), found, case)
@@ -178,30 +172,13 @@ def _convert(graph: Graph, equation: Any, operands: list[Operand]) -> list[Opera
             raise NotCompiled(f"numbers of type {after} are not known; only float64 is")
         return operands
     array = gathered(graph, operands[0])
-    if after == bool:
+    if after.kind == "b":
         return [each(partial(arithmetic.as_mask, graph), array)]
-    if before == bool:
+    if before.kind == "b":
         return [each(partial(arithmetic.as_number, graph), array)]
     if before.kind == "f" and after.kind in "iu":
         return [each(lambda x: arithmetic.apply(graph, "trunc", x), array)]
     raise NotCompiled(f"numbers of type {before} as {after} are not known")
-
-
-@rule(*MOVES)
-def _moved(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand]:
-    """Let JAX move the places of the numbers, and then the numbers to their places."""
-    if len(operands) == 1 and isinstance(operands[0], Table):
-        return [operands[0]._replace(places=places) for places in _bound(equation, [operands[0].places])]
-    arrays = [gathered(graph, operand) for operand in operands]
-    firsts = np.cumsum([0, *(array.size for array in arrays)])
-    places = [np.arange(first, first + array.size).reshape(array.shape) for first, array in zip(firsts, arrays)]
-    numbers = np.concatenate([array.ravel() for array in arrays]) if arrays else np.empty(0, dtype=object)
-    return [numbers[found] if found.ndim else filled((), [numbers[int(found)]]) for found in _bound(equation, places)]
-
-
-def _bound(equation: Any, places: list[np.ndarray]) -> list[np.ndarray]:
-    found = equation.primitive.bind(*map(jnp.asarray, places), **equation.params)
-    return [np.asarray(part) for part in (found if isinstance(found, list | tuple) else [found])]
 
 
 @rule("iota")
@@ -286,7 +263,7 @@ def _part(graph: Graph, array: Operand, axis: int, start: Scalar, size: int) -> 
     found = rows[:size]
     for first in range(1, rows.shape[0] - size + 1):
         here = arithmetic.compare(graph, "eq", start, constant(float(first)))
-        found = each(lambda no, yes, here=here: arithmetic.select(graph, here, no, yes), found, rows[first : first + size])
+        found = each(partial(arithmetic.select, graph, here), found, rows[first : first + size])
     return np.moveaxis(found, 0, axis)
 
 
@@ -303,4 +280,10 @@ def _table_part(graph: Graph, table: Table, starts: list[Scalar], sizes: tuple[i
     return filled(sizes, [read(graph, table, place) for place in places])
 
 
-__all__ = ["MASK", "MOVES", "RULES", "Rule", "dtype", "gathered", "read", "rule"]
+@rule("cumsum")
+def _cumsum(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand]:
+    axis, order = equation.params["axis"], slice(None, None, -1 if equation.params["reverse"] else 1)
+    rows = np.moveaxis(gathered(graph, operands[0]), axis, 0)[order]
+    sums = itertools.accumulate(rows, lambda x, y: each(partial(arithmetic.add, graph), x, y))
+    stacked = np.stack([np.asarray(x, dtype=object) for x in sums])
+    return [np.moveaxis(stacked[order], 0, axis)]

@@ -127,7 +127,7 @@ TRUE, FALSE = constant(True), constant(False)
 
 
 def named(scalar: Scalar) -> object:
-    """Return what tells a scalar from others: constants are told by kind and value (NaN and −0 too), others by place."""
+    """Return what tells a scalar from others: constants are told by kind and value (NaN, −0 too)."""
     if scalar.operation != "const":
         return id(scalar)
     return scalar.kind, str(scalar.detail)
