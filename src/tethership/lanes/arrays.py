@@ -4,6 +4,7 @@ A small array of one flight is an object array of scalars. A large one (a record
 its numbers lie is known, and reading one at a place that a flight works out is an expression.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
@@ -72,11 +73,14 @@ def each(function: Callable[..., Scalar], *arrays: np.ndarray) -> np.ndarray:
     return filled(spread[0].shape, [function(*row) for row in zip(*(array.ravel() for array in spread), strict=True)])
 
 
-def reduced(function: Callable[[Scalar, Scalar], Scalar], array: np.ndarray, axes: Sequence[int]) -> np.ndarray:
-    """Return an array with some axes joined by a function of two scalars, from the first on."""
+def reduced(
+    function: Callable[[Scalar, Scalar], Scalar], neutral: Scalar, array: np.ndarray, axes: Sequence[int]
+) -> np.ndarray:
+    """Return an array with some axes joined by a function of two scalars, from the first on; `neutral` for none."""
     kept = [axis for axis in range(array.ndim) if axis not in axes]
-    rows = np.transpose(array, [*kept, *axes]).reshape((*(array.shape[axis] for axis in kept), -1))
-    result = rows[..., 0]
+    shape, count = [array.shape[axis] for axis in kept], math.prod(array.shape[axis] for axis in axes)
+    rows = np.transpose(array, [*kept, *axes]).reshape((*shape, count))
+    result = rows[..., 0] if count else filled(shape, [neutral] * math.prod(shape))
     for place in range(1, rows.shape[-1]):
         result = each(function, np.asarray(result, dtype=object), rows[..., place])
-    return np.asarray(result, dtype=object).reshape([array.shape[axis] for axis in kept])
+    return np.asarray(result, dtype=object).reshape(shape)

@@ -16,7 +16,7 @@ import numpy as np
 from tethership.lanes import arithmetic
 from tethership.lanes.arrays import Operand, Table, each, filled, lifted, reduced
 from tethership.lanes.not_compiled import NotCompiled
-from tethership.lanes.scalars import NUMBER, ZERO, Graph, Scalar, constant
+from tethership.lanes.scalars import FALSE, NUMBER, ONE, TRUE, ZERO, Graph, Scalar, constant
 
 Rule = Callable[[Graph, Any, list[Operand]], list[Operand]]
 
@@ -88,18 +88,19 @@ def _register_elementwise() -> None:
         "square": lambda graph, x: arithmetic.multiply(graph, x, x),
     }
     RULES.update({name: scalarwise(function) for name, function in named.items()})
-    reductions = {"sum": arithmetic.add, "prod": arithmetic.multiply, "max": arithmetic.greatest}
-    reductions |= {"min": arithmetic.least, "and": arithmetic.both, "or": arithmetic.either}
-    RULES.update({f"reduce_{name}": reduction(function) for name, function in reductions.items()})
+    joined = {"sum": (arithmetic.add, ZERO), "prod": (arithmetic.multiply, ONE)}
+    joined |= {"max": (arithmetic.greatest, constant(-math.inf)), "min": (arithmetic.least, constant(math.inf))}
+    joined |= {"and": (arithmetic.both, TRUE), "or": (arithmetic.either, FALSE)}
+    RULES.update({f"reduce_{name}": reduction(*how) for name, how in joined.items()})
 
 
-def reduction(function: Callable[[Graph, Scalar, Scalar], Scalar]) -> Rule:
-    """Return a rule that joins some axes of an array by a function of two scalars."""
+def reduction(function: Callable[[Graph, Scalar, Scalar], Scalar], neutral: Scalar) -> Rule:
+    """Return a rule that joins some axes of an array by a function of two scalars; none of them give `neutral`."""
 
     def applied(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand]:
         array = gathered(graph, operands[0])
         axes = equation.params["axes"]
-        return [reduced(partial(function, graph), array, axes)] if axes else [array]
+        return [reduced(partial(function, graph), neutral, array, axes)] if axes else [array]
 
     return applied
 
@@ -135,8 +136,7 @@ def _integer_pow(graph: Graph, equation: Any, operands: list[Operand]) -> list[O
 
 @rule("rsqrt")
 def _rsqrt(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand]:
-    one = constant(1.0)
-    inverse = lambda graph, x: arithmetic.divide(graph, one, arithmetic.apply(graph, "sqrt", x))  # noqa: E731
+    inverse = lambda graph, x: arithmetic.divide(graph, ONE, arithmetic.apply(graph, "sqrt", x))  # noqa: E731
     return scalarwise(inverse)(graph, equation, operands)
 
 
