@@ -15,6 +15,7 @@ import xarray as xr
 
 from tethership._version import __version__
 from tethership.campaign.arrays import RESULTS, Arrays, zarr_library
+from tethership.campaign.engine import engine_name
 from tethership.campaign.manifest import MANIFEST, Manifest, read_manifest, write_manifest
 from tethership.campaign.marks import MARKS, Form, Mark, read_marks, write_mark
 from tethership.campaign.plan import Batch, Plan
@@ -164,6 +165,11 @@ def owner(folder: Path, plan: Plan) -> Manifest | None:
         raise ConfigError(f"{folder / RESULTS} has no {MANIFEST} beside it; choose another --out")
     if known is not None and known.digest != digest:
         other = known.tethership != __version__
+        if not other and known.engine is not None and known.engine != engine_name():
+            raise ConfigError(
+                f"{folder} was flown by {known.engine}, here it would be {engine_name()}, whose last digits differ: go on "
+                "where it was begun, or choose another --out (TETHERSHIP_ENGINE=xla flies alike on every machine)"
+            )
         what = f"a campaign of tethership {known.tethership}" if other else "another campaign"
         raise ConfigError(
             f"{folder} holds {what} ({known.name}, {known.cases} cases, seed {known.seed}); "

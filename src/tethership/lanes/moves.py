@@ -28,6 +28,7 @@ MOVES: dict[str, Move] = {
     "copy": lambda p, x: x,
     "copy_p": lambda p, x: x,
     "stop_gradient": lambda p, x: x,
+    "tile": lambda p, x: np.tile(x, p["reps"]),
 }
 """Results of each primitive, from its parameters and operands."""
 

@@ -240,21 +240,21 @@ def _place(graph: Graph, row: np.ndarray, better: str) -> Scalar:
 def _dynamic_slice(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand]:
     array, *starts = operands
     sizes = equation.params["slice_sizes"]
-    starts = [_clipped(graph, s.item(), n - k) for s, n, k in zip(starts, array.shape, sizes, strict=True)]
+    starts = [clipped(graph, s.item(), n - k) for s, n, k in zip(starts, array.shape, sizes, strict=True)]
     if isinstance(array, Table) and any(start.value is None for start in starts):
-        return [_table_part(graph, array, starts, sizes)]
+        return [table_part(graph, array, starts, sizes)]
     for axis, start in enumerate(starts):
-        array = _part(graph, array, axis, start, sizes[axis])
+        array = part(graph, array, axis, start, sizes[axis])
     return [array]
 
 
-def _clipped(graph: Graph, start: Scalar, last: int) -> Scalar:
+def clipped(graph: Graph, start: Scalar, last: int) -> Scalar:
     """Return a place that is kept within 0 … last, 0 for NaN."""
     above = arithmetic.compare(graph, "gt", start, ZERO)
     return arithmetic.least(graph, arithmetic.select(graph, above, ZERO, start), constant(float(last)))
 
 
-def _part(graph: Graph, array: Operand, axis: int, start: Scalar, size: int) -> Operand:
+def part(graph: Graph, array: Operand, axis: int, start: Scalar, size: int) -> Operand:
     """Return a part of an array along one axis: where its start is not known, one of all that it may be."""
     if start.value is not None:
         cut = (slice(None),) * axis + (slice(int(start.value), int(start.value) + size),)
@@ -267,7 +267,7 @@ def _part(graph: Graph, array: Operand, axis: int, start: Scalar, size: int) -> 
     return np.moveaxis(found, 0, axis)
 
 
-def _table_part(graph: Graph, table: Table, starts: list[Scalar], sizes: tuple[int, ...]) -> np.ndarray:
+def table_part(graph: Graph, table: Table, starts: list[Scalar], sizes: tuple[int, ...]) -> np.ndarray:
     """Return a small part of a table that begins where scalars say."""
     strides = table.strides()
     if strides is None:
