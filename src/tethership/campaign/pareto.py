@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 LEAST_SHAPE = -1.0
-"""Below it the likelihood has no bound: it grows without end as the tail's end nears the largest excess [-]."""
+"""Below it the likelihood has no bound where the largest excess is known: it grows as the tail's end nears that [-]."""
 
 PLACES = np.concatenate([np.geomspace(1e-9, 0.5, 60) - 1.0, np.linspace(-0.49, 0.5, 40), np.geomspace(0.51, 1e4, 60)])
 """θ times the largest excess, where the likelihood is looked at first [-]."""
@@ -61,19 +61,24 @@ def fit_pareto(excesses: np.ndarray, censored: np.ndarray, weights: np.ndarray) 
 
 
 class _Counted(NamedTuple):
-    """Excesses y and how often each weighting counts them, all and the known ones; m known ones, the largest of all."""
+    """Excesses y and how often each weighting counts them.
+
+    All and the known ones; m known ones; the largest; whether that is censored, so that the likelihood is bounded.
+    """
 
     heights: np.ndarray
     weights: np.ndarray
     known: np.ndarray
     count: np.ndarray
     largest: np.ndarray
+    bounded: np.ndarray
 
     @classmethod
     def of(cls, heights: np.ndarray, censored: np.ndarray, weights: np.ndarray) -> "_Counted":
         weights = weights.astype(float)
         known = weights * ~censored
-        return cls(heights, weights, known, known.sum(axis=1), np.where(weights > 0, heights, 0.0).max(axis=1))
+        largest, own = (np.where(counted > 0, heights, 0.0).max(axis=1) for counted in (weights, known))
+        return cls(heights, weights, known, known.sum(axis=1), largest, own < largest)
 
 
 def _fitted(rows: _Counted) -> Fits:
@@ -95,7 +100,7 @@ def _best_place(rows: _Counted) -> np.ndarray:
         logarithms = np.log1p(theta[:, None] * np.minimum(rows.heights, largest)).T
         shape = rows.weights[own] @ logarithms / rows.count[own, None]
         value = -rows.count[own, None] * np.log(shape / theta) - rows.known[own] @ logarithms
-        best[own] = np.argmax(np.where(shape > LEAST_SHAPE, value, -np.inf), axis=1)
+        best[own] = np.argmax(np.where(rows.bounded[own, None] | (shape > LEAST_SHAPE), value, -np.inf), axis=1)
     return best
 
 
