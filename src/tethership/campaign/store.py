@@ -99,10 +99,9 @@ class CampaignStore:
         ConfigError
             They cannot be written (disk full): what was written before stays readable.
         """
-        rows = slice(batch.first, batch.first + len(batch.values))
         with self._said():
             for name, values in found.items():
-                self._arrays.output(name, Form.of(values))[batch.law, rows] = values
+                self._arrays.write(name, batch, values)
         write_mark(self.folder, batch.number, self._digest, found, CURE)
 
     def _drop_damaged(self) -> None:
@@ -233,7 +232,7 @@ _AGAIN = "run the same command again, which flies again what is damaged"
 def _loaded(path: Path, manifest: Manifest) -> xr.Dataset:
     """Return what is in a group, or raise ConfigError where it is not what the campaign says."""
     try:
-        with warnings.catch_warnings(action="ignore"), xr.open_zarr(path, consolidated=False) as data:
+        with warnings.catch_warnings(action="ignore"), xr.open_zarr(path, chunks=None, consolidated=False) as data:
             sizes = {str(dim): size for dim, size in data.sizes.items()}
             whole = (sizes.get("law"), sizes.get("case")) == (len(manifest.laws), manifest.cases)
             inner = [size for dim, size in sizes.items() if dim not in ("law", "case")]

@@ -34,6 +34,11 @@ def _flyer(work: Work) -> Flyer:
     return Flyer(_scenario(work), work.names, np.array(work.example), work.lanes, work.step)
 
 
+def make_ready(work: Work) -> None:
+    """Make what all batches have in common, once, and load all that it takes."""
+    _flyer(work)
+
+
 def fly_batch(work: Work, batch: Batch) -> dict[str, np.ndarray]:
     """Return the metrics of a batch's flights, and the error of those flown again.
 
