@@ -14,7 +14,7 @@ import jax
 import platformdirs
 from jaxtyping import Array, Float
 
-from tethership.errors import ConfigError, shown
+from tethership.errors import ConfigError, TethershipWarning, shown
 from tethership.lanes import NotCompiled, Program, identity
 from tethership.plant import ClosedLoop
 from tethership.simulation import BatchResult, Beat, StopConditions, differing, fly_lanes, fly_to_its_end, hoisted
@@ -60,11 +60,13 @@ def find_engine(loops: ClosedLoop, vectors: Float[Array, "n flights"], terms: Te
     if asked == "lanes":
         program = _program(loops, vectors, terms)
         if isinstance(program, Program):
-            return _by_lanes(program, terms)
-    return _by_xla(differing(loops), terms)
+            return by_lanes(program, terms)
+    return by_xla(differing(loops), terms)
 
 
-def _by_lanes(program: Program, terms: Terms) -> Engine:
+def by_lanes(program: Program, terms: Terms) -> Engine:
+    """Return an engine that flies by a program of `compile_flights`."""
+
     def fly(loops: ClosedLoop, vectors: Float[Array, "n flights"], threads: int) -> BatchResult:
         arrays = jax.tree.leaves(eqx.filter(loops, eqx.is_array))
         shared = jax.tree.leaves(eqx.filter(terms, eqx.is_array))
@@ -76,7 +78,9 @@ def _by_lanes(program: Program, terms: Terms) -> Engine:
 _flown = eqx.filter_jit(fly_lanes)
 
 
-def _by_xla(differ: tuple[bool, ...], terms: Terms) -> Engine:
+def by_xla(differ: tuple[bool, ...], terms: Terms) -> Engine:
+    """Return an engine that flies by XLA, for loops of which these arrays differ (`differing`)."""
+
     def fly(loops: ClosedLoop, vectors: Float[Array, "n flights"], threads: int) -> BatchResult:
         held, axes = hoisted(loops, differ)
         return _flown(held, axes, terms.stop, terms.limits, vectors, terms.time_limit, terms.rhythm)
@@ -86,25 +90,42 @@ def _by_xla(differ: tuple[bool, ...], terms: Terms) -> Engine:
 
 def _program(loops: ClosedLoop, vectors: Float[Array, "n flights"], terms: Terms) -> Program | NotCompiled:
     """Return the program of flights of this structure, made once a process, or why there is none."""
-    (loop_leaves, loop_rest), (term_leaves, term_rest) = (_parted(tree) for tree in (loops, terms))
-    shapes = tuple((leaf.shape[:-1], str(leaf.dtype)) for leaf in loop_leaves)
-    key = (loop_rest, term_rest, shapes, tuple(leaf.shape for leaf in term_leaves))
+    leaves, rest = _parted((loops, terms))
+    key = (rest, tuple((leaf.shape, str(leaf.dtype)) for leaf in leaves))
     if key not in _programs:
-        _programs[key] = _made(loop_leaves, loop_rest, vectors, term_leaves, term_rest)
+        try:
+            _programs[key] = compile_flights(loops, vectors, terms)
+        except NotCompiled as error:
+            warnings.warn(f"batches are flown by XLA, some ten times slower: {error}", TethershipWarning, stacklevel=3)
+            _programs[key] = error
     return _programs[key]
 
 
-def _made(loop_leaves: Any, loop_rest: Any, vectors: Any, term_leaves: Any, term_rest: Any) -> Program | NotCompiled:
+def compile_flights(
+    loops: ClosedLoop, vectors: Float[Array, "n flights"], terms: Terms, width: int | None = None
+) -> Program:
+    """Return the program that flies loops and starts of this structure to their ends.
+
+    Parameters
+    ----------
+    loops, vectors, terms
+        As in `find_engine`.
+    width : int, optional
+        Flights in a vector.
+
+    Raises
+    ------
+    NotCompiled
+        There is no compiler, or the plant uses a primitive that is not known.
+    """
+    (loop_leaves, loop_rest), (term_leaves, term_rest) = _parted(loops), _parted(terms)
+
     def flight(shared: list[Array], own: tuple[list[Array], Array]) -> BatchResult:
-        terms, loop = _whole(shared, term_rest), _whole(own[0], loop_rest)
-        return fly_to_its_end(loop, terms.stop, terms.limits, own[1], terms.time_limit, terms.rhythm)
+        common, loop = _whole(shared, term_rest), _whole(own[0], loop_rest)
+        return fly_to_its_end(loop, common.stop, common.limits, own[1], common.time_limit, common.rhythm)
 
     own = jax.tree.map(lambda leaf: leaf[..., 0], (loop_leaves, vectors))
-    try:
-        return Program(flight, term_leaves, own, folder=platformdirs.user_cache_path("tethership") / "lanes")
-    except NotCompiled as error:
-        warnings.warn(f"batches are flown by XLA, some ten times slower: {error}", stacklevel=2)
-        return error
+    return Program(flight, term_leaves, own, width, platformdirs.user_cache_path("tethership") / "lanes")
 
 
 def _parted(tree: Any) -> tuple[list[Array], Any]:

@@ -163,7 +163,9 @@ def _fitted(
     """Return ξ, σ and the share above the threshold of each sample, NaN where known excesses are few or all the same."""
     known = weights[:, ~broken] > 0
     heights = excesses[~broken]
-    spread = np.where(known, heights, -np.inf).max(1, initial=-np.inf) > np.where(known, heights, np.inf).min(1, initial=np.inf)
+    spread = np.where(known, heights, -np.inf).max(1, initial=-np.inf) > np.where(known, heights, np.inf).min(
+        1, initial=np.inf
+    )
     enough = spread & (weights[:, ~broken].sum(axis=1) >= 0.5 * FEWEST)
     shapes, scales = np.full((2, len(weights)), np.nan)
     if enough.any():

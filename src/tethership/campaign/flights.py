@@ -174,17 +174,17 @@ class Flyer:
         self._config = _unbreakable(config) if unbreakable else config
         self._question = ask(scenario)
         self._start = jnp.zeros(len(self._question.unknowns.effort))
-        terms = Terms(
+        self.terms = Terms(
             Stop.docking(scenario).conditions(),
             jnp.asarray(scenario.config.watched_tensions()),
             jnp.asarray(scenario.config.stop.time_limit),
             beats_of(step, scenario.config.control.period, scenario.config.control.delay),
         )
         self.lanes = lanes
-        loops, vectors, _ = self._prepare(_probe(example, lanes))
-        self._engine = find_engine(loops, vectors, terms)
+        loops, vectors, _ = self.prepare(_probe(example, lanes))
+        self._engine = find_engine(loops, vectors, self.terms)
 
-    def _prepare(self, values: np.ndarray) -> tuple[ClosedLoop, Array, Array]:
+    def prepare(self, values: np.ndarray) -> tuple[ClosedLoop, Array, Array]:
         """Return loops, starts and what the trims left, for values of shape (lanes, names)."""
         return _prepared(self._config, self._places, self._question, jnp.asarray(values.T), self._start)
 
@@ -207,7 +207,7 @@ class Flyer:
                 _check_lag(name, float(column.min()), self._longest)
         count = len(values)
         padded = np.concatenate([values, np.repeat(values[-1:], self.lanes - count, axis=0)])
-        loops, vectors, left = self._prepare(padded)
+        loops, vectors, left = self.prepare(padded)
         result = self._engine(loops, vectors, threads)
         found = {**metrics_of(result), "unbalanced": np.asarray(left)}
         return {name: array[:count] for name, array in found.items()}

@@ -166,8 +166,8 @@ def owner(folder: Path, plan: Plan) -> Manifest | None:
         other = known.tethership != __version__
         if not other and known.engine is not None and known.engine != engine_name():
             raise ConfigError(
-                f"{folder} was flown by {known.engine}, here it would be {engine_name()}, whose last digits differ: go on "
-                "where it was begun, or choose another --out (TETHERSHIP_ENGINE=xla flies alike on every machine)"
+                f"{folder} was flown by {known.engine}, here it would be {engine_name()}, whose last digits differ: "
+                "go on where it was begun, or choose another --out (TETHERSHIP_ENGINE=xla is alike on all machines)"
             )
         what = f"a campaign of tethership {known.tethership}" if other else "another campaign"
         raise ConfigError(

@@ -28,8 +28,8 @@ def _scenario(work: Work) -> Scenario:
 def _flyer(work: Work) -> Flyer:
     if work.engine not in ("", engine_name()):
         raise ConfigError(
-            f"a worker would fly by {engine_name()}, the campaign is flown by {work.engine}, and the last digits differ: "
-            "take workers of one kind, or set TETHERSHIP_ENGINE=xla for all"
+            f"a worker would fly by {engine_name()}, the campaign is flown by {work.engine}, and the last digits "
+            "differ: take workers of one kind, or set TETHERSHIP_ENGINE=xla for all"
         )
     return Flyer(_scenario(work), work.names, np.array(work.example), work.lanes, work.step)
 

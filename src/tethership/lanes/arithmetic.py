@@ -7,10 +7,11 @@ is assumed that finite numbers alone would allow, so that a NaN is seen.
 import math
 import operator
 from collections.abc import Callable
+from typing import Any
 
 from tethership.lanes.scalars import FALSE, MASK, ONE, TRUE, ZERO, Graph, Scalar, constant, divided, folded
 
-FOLDED: dict[str, Callable[..., float]] = {
+FOLDED: dict[str, Callable[..., Any]] = {
     "add": operator.add,
     "sub": operator.sub,
     "mul": operator.mul,

@@ -71,6 +71,7 @@ class Program:
         own_leaves, self._own_tree = jax.tree.flatten(own)
         self._shared_shapes = [np.shape(leaf) for leaf in shared_leaves]
         self._own_shapes = [np.shape(leaf) for leaf in own_leaves]
+        self._results_tree: Any = None  # known once the function was traced
         split = len(shared_leaves)
 
         def flat(*leaves: Any) -> list[Any]:

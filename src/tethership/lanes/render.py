@@ -177,4 +177,5 @@ def _literal(scalar: Scalar) -> str:
         return "NAN"
     if math.isinf(value):
         return "INFINITY" if value > 0 else "(-INFINITY)"
-    return value.hex() if value >= 0 and math.copysign(1.0, value) > 0 else f"({value.hex()})"
+    text = float(value).hex()
+    return f"({text})" if text.startswith("-") else text

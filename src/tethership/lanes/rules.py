@@ -240,7 +240,9 @@ def _place(graph: Graph, row: np.ndarray, better: str) -> Scalar:
 def _dynamic_slice(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand]:
     array, *starts = operands
     sizes = equation.params["slice_sizes"]
-    starts = [clipped(graph, s.item(), n - k) for s, n, k in zip(starts, array.shape, sizes, strict=True)]
+    starts = [
+        clipped(graph, gathered(graph, s).item(), n - k) for s, n, k in zip(starts, array.shape, sizes, strict=True)
+    ]
     if isinstance(array, Table) and any(start.value is None for start in starts):
         return [table_part(graph, array, starts, sizes)]
     for axis, start in enumerate(starts):
