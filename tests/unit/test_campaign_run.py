@@ -28,6 +28,9 @@ from tethership.simulation.batch import CODES
 
 COMMAND = [sys.executable, "-m", "tethership"]
 
+LIMIT = 600.0
+"""How long a command is waited for [s], on a loaded machine and with nothing compiled."""
+
 
 @pytest.fixture(scope="module")
 def small(tmp_path_factory):
@@ -42,7 +45,8 @@ def small(tmp_path_factory):
 
 def run(*arguments, **options):
     """Run the command, check that it went well, and return its JSON."""
-    done = subprocess.run([*COMMAND, *map(str, arguments), "--json"], capture_output=True, text=True, **options)
+    limit = {"timeout": LIMIT, **options}
+    done = subprocess.run([*COMMAND, *map(str, arguments), "--json"], capture_output=True, text=True, **limit)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
@@ -123,8 +127,7 @@ def test_killed_and_started_again_it_ends_bit_identical(whole, tmp_path, small):
     limit = time.monotonic() + 200
     while not marks(folder) and time.monotonic() < limit and started.poll() is None:
         time.sleep(0.01)
-    os.killpg(started.pid, signal.SIGKILL)
-    started.wait()
+    end([started])
     before = {mark.name: mark.stat().st_mtime_ns for mark in marks(folder)}
     assert 0 < len(before) < 6
     said = run("campaign", small, "--out", folder)
@@ -213,6 +216,7 @@ def test_no_scheduler_is_said_in_one_line(tmp_path, small):
         [*COMMAND, "campaign", small, "--scheduler", "tcp://127.0.0.1:9", "--out", str(tmp_path / "x")],
         capture_output=True,
         text=True,
+        timeout=LIMIT,
     )
     assert done.returncode == 2
     assert "no scheduler answers at tcp://127.0.0.1:9" in done.stderr.splitlines()[-1]
@@ -253,7 +257,7 @@ def end(processes):
     for process in processes:
         if process.poll() is None:
             os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
+        process.wait(60)
 
 
 @pytest.mark.slow
@@ -279,8 +283,10 @@ def cluster(tmp_path):
     scheduler, common = start_scheduler(tmp_path)
     command = [sys.executable, "-m", "dask", "worker", "--nworkers", "1", "--nthreads", "1", "--no-nanny", *common]
     workers = [subprocess.Popen(command, **quiet(tmp_path)) for _ in range(2)]
-    yield json.loads((tmp_path / "scheduler.json").read_text())["address"], workers
-    end([*workers, scheduler])
+    try:
+        yield json.loads((tmp_path / "scheduler.json").read_text())["address"], workers
+    finally:
+        end([*workers, scheduler])
 
 
 def test_a_cluster_that_loses_a_worker_loses_nothing(whole, cluster, tmp_path, small):
@@ -288,11 +294,15 @@ def test_a_cluster_that_loses_a_worker_loses_nothing(whole, cluster, tmp_path, s
     folder = tmp_path / "layers"
     command = [*COMMAND, "campaign", small, "--out", str(folder), "--scheduler", address, "--json"]
     started = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    limit = time.monotonic() + 200
-    while not marks(folder) and time.monotonic() < limit and started.poll() is None:
-        time.sleep(0.01)
-    os.killpg(workers[0].pid, signal.SIGKILL)
-    output, errors = started.communicate(timeout=300)
+    try:
+        limit = time.monotonic() + 200
+        while not marks(folder) and time.monotonic() < limit and started.poll() is None:
+            time.sleep(0.01)
+        os.killpg(workers[0].pid, signal.SIGKILL)
+        output, errors = started.communicate(timeout=300)
+    finally:
+        started.kill()
+        started.wait(60)
     assert started.returncode == 0, errors
     assert json.loads(output)["runs"] == 144
     same(whole[0], folder)
@@ -324,7 +334,7 @@ def test_flights_without_a_start_have_no_verdict_and_exit_3(tmp_path):
     text += '[[requirements]]\nlimit = "cable_break"\nprobability = 0.5\n'
     (tmp_path / "aside.toml").write_text(text, encoding="utf-8")
     command = [*COMMAND, "campaign", str(tmp_path / "aside.toml"), "--out", str(tmp_path / "out"), "--json"]
-    done = subprocess.run(command, capture_output=True, text=True)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT)
     told = json.loads(done.stdout)
     assert done.returncode == 3
     assert told["failed"] == told["runs"] == 6

@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+import scipy.optimize
 import scipy.stats
 
 from tethership.campaign.compliance import judge, least_flights
-from tethership.campaign.extremes import fit_tail
+from tethership.campaign.extremes import _fitted, fit_tail
 from tethership.campaign.importance import rank_importance, sobol_importance
 from tethership.campaign.paired import paired_limit, paired_metric
-from tethership.campaign.probability import clopper_pearson1934, estimate, running
+from tethership.campaign.probability import clopper_pearson1934, clopper_pearson_ends, estimate, running
 from tethership.campaign.sampling import saltelli_design
 from tethership.campaign.schema import Requirement
 
@@ -23,6 +24,18 @@ def test_interval_is_that_of_the_beta_distribution():
     low, high = clopper_pearson1934(7, 100, 0.9)
     assert low == pytest.approx(scipy.stats.beta.ppf(0.05, 7, 94), rel=1e-9)
     assert high == pytest.approx(scipy.stats.beta.ppf(0.95, 8, 93), rel=1e-9)
+
+
+@pytest.mark.parametrize("confidence", [0.5, 0.9, 0.95, 0.9999])
+def test_intervals_in_arrays_are_those_of_the_binomial_tail_by_root_search(confidence):
+    flights = np.repeat([1, 2, 10, 213, 1000, 100_000], 6)
+    counts = (flights * np.tile([0.0, 0.001, 0.02, 0.3, 0.97, 1.0], 6)).astype(int)
+    searched = [scipy.stats.binomtest(k, n).proportion_ci(confidence) for k, n in zip(counts, flights, strict=True)]
+    low, high = clopper_pearson_ends(counts, flights, confidence)
+    np.testing.assert_allclose(low, [found.low for found in searched], rtol=1e-9, atol=2e-12)  # brentq stops there
+    np.testing.assert_allclose(high, [found.high for found in searched], rtol=1e-9, atol=2e-12)  # brentq stops there
+    for k, n, *ends in zip(counts, flights, low, high, strict=True):
+        assert clopper_pearson1934(int(k), int(n), confidence) == tuple(ends)
 
 
 def test_interval_covers_the_truth_as_often_as_it_says():
@@ -87,6 +100,41 @@ def test_censored_peaks_do_not_bend_the_tail():
     assert tail.scale == pytest.approx(100.0, rel=0.1)
     # told nothing of it the fit finds an end that is not there
     assert fit_tail(np.minimum(values, end), share=0.15, draws=2).shape < -0.3
+
+
+@pytest.mark.parametrize("shape", [-0.3, 0.0, 0.4])
+@pytest.mark.parametrize("end", [np.inf, 150.0])
+def test_tail_and_its_bootstrap_are_of_largest_likelihood(shape, end):
+    """Beside a search from the same place for every bootstrap sample, drawn as it always was."""
+    drawn = scipy.stats.genpareto.rvs(shape, scale=100.0, size=1500, random_state=4)
+    values, over = np.minimum(drawn, end), drawn > end
+    tail = fit_tail(values, over, seed=7, draws=5)
+    generator = np.random.default_rng(7)
+    places = [np.arange(1500), *(generator.integers(1500, size=1500) for _ in range(5))]
+    fitted = zip([tail.shape, *tail.shapes], [tail.scale, *tail.scales], [tail.share, *tail.shares], strict=True)
+    for place, (xi, sigma, share) in zip(places, fitted, strict=True):
+        whole = values[place][~over[place] & (values[place] > tail.threshold)] - tail.threshold
+        broken = np.maximum(values[place][over[place]] - tail.threshold, 0.0)
+
+        def lost(point, whole=whole, broken=broken):
+            law = scipy.stats.genpareto(point[0], 0.0, np.exp(point[1]))
+            return -law.logpdf(whole).sum() - law.logsf(broken).sum()
+
+        tight = {"xatol": 1e-9, "fatol": 1e-11, "maxiter": 4000}
+        best = scipy.optimize.minimize(lost, [xi, np.log(sigma)], method="Nelder-Mead", options=tight)
+        assert lost([xi, np.log(sigma)]) <= best.fun + 1e-9
+        assert best.x == pytest.approx([xi, np.log(sigma)], abs=2e-6)
+        assert share == np.mean((values[place] > tail.threshold) | over[place])
+
+
+def test_bootstrap_samples_without_enough_excesses_take_the_fit():
+    """A sample with fewer than fifteen known excesses has no fit of its own."""
+    weights = np.ones((3, 40), np.int16)
+    weights[1, 14:], weights[2] = 0, 0
+    weights[2, 0] = 40
+    shapes, scales, shares = _fitted(np.linspace(1.0, 50.0, 40), np.zeros(40, bool), weights, 400)
+    assert list(np.isnan(shapes)) == list(np.isnan(scales)) == [False, True, True]
+    assert shares == pytest.approx([0.1, 0.035, 0.1])
 
 
 def test_a_tail_that_is_none_is_said_to_be():

@@ -12,6 +12,7 @@ import pytest
 
 from tethership.campaign import run as campaign_run
 from tethership.campaign.execute import in_this_process
+from tethership.campaign.marks import Form
 from tethership.campaign.plan import make_plan
 from tethership.campaign.run import run_campaign
 from tethership.campaign.store import UNITS, CampaignStore, open_results, whole_results
@@ -110,6 +111,26 @@ def test_what_is_damaged_is_refused_then_flown_again(folder, undamaged, plan, da
     fill(store, plan)
     assert whole_results(folder).identical(whole_results(undamaged))
     assert CampaignStore(folder, plan).unfinished() == []
+
+
+def test_chunks_are_those_that_zarr_writes(undamaged, plan, tmp_path):
+    """Byte for byte, the last batch of a law being shorter, and no chunk where there is nothing to say."""
+    shorter = make_plan("layers", {"samples": 41})
+    ours, theirs = CampaignStore(tmp_path / "ours", shorter), CampaignStore(tmp_path / "theirs", shorter)
+    for number in ours.unfinished():
+        batch, found = shorter.batch(number), drawn(shorter.batch(number))
+        ours.keep(batch, found)
+        for name, values in found.items():
+            rows = slice(batch.first, batch.first + len(values))
+            theirs._arrays.output(name, Form.of(values))[batch.law, rows] = values
+    one, other = (
+        {path.relative_to(folder): path.read_bytes() for path in (folder / "results.zarr").rglob("*") if path.is_file()}
+        for folder in (tmp_path / "ours", tmp_path / "theirs")
+    )
+    assert one == other
+    assert len(list((tmp_path / "ours" / "results.zarr" / "error_E").rglob("*"))) == 1  # its metadata
+    ours.keep(shorter.batch(0), drawn(shorter.batch(0)) | {"flight_time": np.full(24, np.nan)})
+    assert np.isnan(open_results(tmp_path / "ours")["flight_time"].values[0, :24]).all()
 
 
 def test_a_whole_store_is_not_touched(folder, plan):

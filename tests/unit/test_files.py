@@ -6,6 +6,7 @@ If this fails, a full disk or a kill destroys what an earlier run wrote, or leav
 import errno
 import json
 import os
+import select
 import signal
 import subprocess
 import sys
@@ -118,7 +119,7 @@ files.write_together({folder / name: f"new {name}" for name in names})
 def test_killed_at_any_step_no_picture_of_another_run_lies_there(tmp_path, steps):
     """Steps: three files to the disk, two old ones taken away, three names; then all is done."""
     write_together(run_of(tmp_path, "old"))
-    done = subprocess.run([sys.executable, "-c", KILLED, str(tmp_path), str(steps)])
+    done = subprocess.run([sys.executable, "-c", KILLED, str(tmp_path), str(steps)], timeout=120)
     assert done.returncode == -signal.SIGKILL
     found = shown(tmp_path)
     assert len(set(found.values())) == 1
@@ -183,6 +184,7 @@ def test_one_at_a_time_in_a_folder_and_a_kill_frees_it(tmp_path):
     other = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     try:
         assert other.stdout is not None
+        assert select.select([other.stdout], [], [], 120)[0]
         assert other.stdout.readline() == "held\n"
         today = time.strftime("%Y-%m-%d")
         with (
@@ -192,7 +194,7 @@ def test_one_at_a_time_in_a_folder_and_a_kill_frees_it(tmp_path):
             pass
     finally:
         other.kill()
-        other.wait()
+        other.wait(60)
     assert json.loads((tmp_path / ".tethership-lock.json").read_text())["process"] == other.pid  # it could not tidy up
     with held(tmp_path):
         assert json.loads((tmp_path / ".tethership-lock.json").read_text())["process"] == os.getpid()

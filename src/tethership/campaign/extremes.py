@@ -1,4 +1,4 @@
-"""Extreme values of a peak: a generalised Pareto tail over a threshold. Depends on: scipy.
+"""Extreme values of a peak: a generalised Pareto tail over a threshold. Depends on: scipy, campaign.pareto.
 
 References
 ----------
@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.stats
+
+from tethership.campaign.pareto import fit_pareto
 
 SHARE = 0.1
 """Share of the flights above the threshold."""
@@ -120,29 +122,52 @@ def fit_tail(
     if len(values) == 0 or np.sum(~over) * share < FEWEST:
         return None
     threshold = float(np.quantile(np.where(over, np.inf, values), 1.0 - share - np.mean(over), method="lower"))
-    fitted = _fitted(values, over, threshold)
-    if fitted is None:
+    place = np.flatnonzero((values > threshold) | over)
+    excesses, broken = values[place] - threshold, over[place]
+    weights = np.concatenate([np.ones((1, len(place)), np.int16), _drawn(len(values), place, draws, seed)])
+    shapes, scales, shares = _fitted(excesses, broken, weights, len(values))
+    if np.isnan(shapes[0]):
         return None
-    shape, scale, above = fitted
-    generator = np.random.default_rng(seed)
-    drawn = []
-    for _ in range(draws):
-        place = generator.integers(len(values), size=len(values))
-        drawn.append(_fitted(values[place], over[place], threshold) or fitted)
-    shapes, scales, shares = np.array(drawn).T
-    whole = values[(values > threshold) & ~over] - threshold
+    whole = excesses[~broken]
     last = np.max(whole) if np.any(over) else np.inf
+    shape, scale, lost = shapes[0], scales[0], np.isnan(shapes)
+    shapes, scales, shares = (np.where(lost, of[0], of) for of in (shapes, scales, shares))
     inside = scipy.stats.genpareto.cdf(last, shape, 0.0, scale)
     distance = scipy.stats.kstest(whole, lambda x: scipy.stats.genpareto.cdf(x, shape, 0.0, scale) / inside).statistic
-    return Tail(threshold, above, shape, scale, shapes, scales, shares, len(whole), int(np.sum(over)), float(distance))
+    return Tail(
+        threshold,
+        float(shares[0]),
+        float(shape),
+        float(scale),
+        shapes[1:],
+        scales[1:],
+        shares[1:],
+        len(whole),
+        int(np.sum(over)),
+        float(distance),
+    )
 
 
-def _fitted(values: np.ndarray, over: np.ndarray, threshold: float) -> tuple[float, float, float] | None:
-    """Return ξ, σ and the share above the threshold, None where the excesses are too few or all the same."""
-    above = (values > threshold) | over
-    whole = values[above & ~over] - threshold
-    if len(whole) < 0.5 * FEWEST or np.ptp(whole) == 0.0:
-        return None
-    data = scipy.stats.CensoredData(uncensored=whole, right=values[above & over] - threshold)
-    shape, _, scale = scipy.stats.genpareto.fit(data, floc=0.0)
-    return float(shape), float(scale), float(np.mean(above))
+def _drawn(flights: int, place: np.ndarray, draws: int, seed: int) -> np.ndarray:
+    """Return how often the flights at `place` are in each bootstrap sample of all, shape (draws, places)."""
+    generator = np.random.default_rng(seed)
+    counts = np.empty((draws, len(place)), np.int16)
+    for row in counts:
+        row[:] = np.bincount(generator.integers(flights, size=flights), minlength=flights)[place]
+    return counts
+
+
+def _fitted(
+    excesses: np.ndarray, broken: np.ndarray, weights: np.ndarray, flights: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return ξ, σ and the share above the threshold of each sample, NaN where known excesses are few or all the same."""
+    known = weights[:, ~broken] > 0
+    heights = excesses[~broken]
+    spread = np.where(known, heights, -np.inf).max(1, initial=-np.inf) > np.where(known, heights, np.inf).min(
+        1, initial=np.inf
+    )
+    enough = spread & (weights[:, ~broken].sum(axis=1) >= 0.5 * FEWEST)
+    shapes, scales = np.full((2, len(weights)), np.nan)
+    if enough.any():
+        shapes[enough], scales[enough] = fit_pareto(excesses, broken, weights[enough])
+    return shapes, scales, weights.sum(axis=1) / flights

@@ -17,6 +17,7 @@ from jaxtyping import Array, Float
 
 from tethership.analysis.loci import nearby_equilibrium
 from tethership.analysis.trim import Question, ask, pose
+from tethership.campaign.engine import Terms, find_engine
 from tethership.errors import ConfigError
 from tethership.plant import ClosedLoop
 from tethership.scenario import (
@@ -28,7 +29,7 @@ from tethership.scenario import (
     list_parameters,
     with_values,
 )
-from tethership.simulation import STEP, Stop, beats_of, differing, fly_lanes, hoisted, metrics_of, moved_start
+from tethership.simulation import STEP, Stop, beats_of, metrics_of, moved_start
 
 BATCH = 168
 """Flights of one compiled call: fixed, so that every campaign runs the same program."""
@@ -126,9 +127,6 @@ def _prepared(
     return eqx.combine(loops, static), vectors, left
 
 
-_flown = eqx.filter_jit(fly_lanes)
-
-
 class Flyer:
     """Flies cases of one scenario, a batch at a time; every call with as many lanes runs the same program.
 
@@ -176,19 +174,28 @@ class Flyer:
         self._config = _unbreakable(config) if unbreakable else config
         self._question = ask(scenario)
         self._start = jnp.zeros(len(self._question.unknowns.effort))
-        self._stop = Stop.docking(scenario).conditions()
-        self._limits = jnp.asarray(scenario.config.watched_tensions())
-        self._time_limit = jnp.asarray(scenario.config.stop.time_limit)
-        self._beats = beats_of(step, scenario.config.control.period, scenario.config.control.delay)
+        self.terms = Terms(
+            Stop.docking(scenario).conditions(),
+            jnp.asarray(scenario.config.watched_tensions()),
+            jnp.asarray(scenario.config.stop.time_limit),
+            beats_of(step, scenario.config.control.period, scenario.config.control.delay),
+        )
         self.lanes = lanes
-        self._differ = differing(self._prepare(_probe(example, lanes))[0])
+        loops, vectors, _ = self.prepare(_probe(example, lanes))
+        self._engine = find_engine(loops, vectors, self.terms)
 
-    def _prepare(self, values: np.ndarray) -> tuple[ClosedLoop, Array, Array]:
+    def prepare(self, values: np.ndarray) -> tuple[ClosedLoop, Array, Array]:
         """Return loops, starts and what the trims left, for values of shape (lanes, names)."""
         return _prepared(self._config, self._places, self._question, jnp.asarray(values.T), self._start)
 
-    def fly(self, values: np.ndarray) -> dict[str, np.ndarray]:
+    def fly(self, values: np.ndarray, threads: int = 1) -> dict[str, np.ndarray]:
         """Return the metrics of at most `lanes` cases, values [SI] of shape (cases, names), as `fly_cases` does.
+
+        Parameters
+        ----------
+        values : ndarray
+        threads : int
+            How many may fly them at once.
 
         Raises
         ------
@@ -200,9 +207,8 @@ class Flyer:
                 _check_lag(name, float(column.min()), self._longest)
         count = len(values)
         padded = np.concatenate([values, np.repeat(values[-1:], self.lanes - count, axis=0)])
-        loops, vectors, left = self._prepare(padded)
-        held, axes = hoisted(loops, self._differ)
-        result = _flown(held, axes, self._stop, self._limits, vectors, self._time_limit, self._beats)
+        loops, vectors, left = self.prepare(padded)
+        result = self._engine(loops, vectors, threads)
         found = {**metrics_of(result), "unbalanced": np.asarray(left)}
         return {name: array[:count] for name, array in found.items()}
 

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from tethership._version import __version__
+from tethership.campaign.engine import engine_name
 from tethership.campaign.plan import Plan, lanes_for
 from tethership.errors import ConfigError
 from tethership.results import array_digest, is_whole, sealed, write_atomically
@@ -21,7 +22,7 @@ class Manifest(BaseModel):
     """What a campaign is.
 
     `digest` is of everything that goes into its numbers, `input` of the values of its cases, whose names are `inputs`;
-    version 0.1 wrote neither these two nor `lanes`.
+    `engine` is what flew them. Version 0.1 wrote neither these three nor `lanes`.
     """
 
     model_config = ConfigDict(strict=True)
@@ -37,6 +38,7 @@ class Manifest(BaseModel):
     lanes: Annotated[int, Field(ge=1)] | None = None
     input: str | None = None
     inputs: list[str] | None = None
+    engine: str | None = None
 
     def rows(self, number: int) -> tuple[int, slice]:
         """Return law and cases of a batch."""
@@ -69,6 +71,7 @@ def write_manifest(folder: Path, plan: Plan, cure: str) -> None:
         "lanes": plan.lanes,
         "input": array_digest(plan.values),
         "inputs": list(plan.names),
+        "engine": engine_name(),
     }
     write_atomically(folder / MANIFEST, json.dumps(sealed(manifest), indent=1), cure)
 

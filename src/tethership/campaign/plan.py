@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tethership._version import __version__
+from tethership.campaign.engine import engine_name
 from tethership.campaign.flights import BATCH, FEW, SWITCHES
 from tethership.campaign.sampling import Sample, draw
 from tethership.campaign.schema import CampaignConfig, LawConfig
@@ -76,6 +77,8 @@ class Work(NamedTuple):
         h [s].
     trusted : bool
         Whether laws of one's own that the scenario names may be run.
+    engine : str
+        What flies them, as `engine_name` says it.
     """
 
     scenario: str
@@ -85,6 +88,7 @@ class Work(NamedTuple):
     lanes: int
     step: float
     trusted: bool = False
+    engine: str = ""
 
 
 class Plan(NamedTuple):
@@ -135,9 +139,8 @@ class Plan(NamedTuple):
     def work(self) -> Work:
         """Return what all batches have in common."""
         document, example = json.dumps(self.scenario.document), tuple(map(float, self.values[0, 0]))
-        return Work(
-            document, self.scenario.name, self.names, example, self.lanes, self.config.step, self.scenario.trusted
-        )
+        step, trusted = self.config.step, self.scenario.trusted
+        return Work(document, self.scenario.name, self.names, example, self.lanes, step, trusted, engine_name())
 
     def batch(self, number: int) -> Batch:
         """Return one batch by its number."""
@@ -152,6 +155,7 @@ class Plan(NamedTuple):
         """Return what tells this campaign from another: everything that goes into its numbers."""
         whole = [
             __version__,
+            engine_name(),
             self.lanes,
             self.document,
             self.scenario.document,

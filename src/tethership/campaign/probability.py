@@ -7,6 +7,7 @@ are not independent: there the interval is that of Student from the means of ind
 from typing import NamedTuple
 
 import numpy as np
+import scipy.special
 import scipy.stats
 
 
@@ -65,8 +66,22 @@ def estimate(exceeded: np.ndarray, sampling: str, replicate: np.ndarray, confide
 
 def clopper_pearson1934(count: int, flights: int, confidence: float = 0.95) -> tuple[float, float]:
     """Return the exact two-sided interval of a binomial share [-], for a confidence [-]."""
-    found = scipy.stats.binomtest(count, flights).proportion_ci(confidence, method="exact")
-    return float(found.low), float(found.high)
+    low, high = clopper_pearson_ends(np.array(count), np.array(flights), confidence)
+    return float(low), float(high)
+
+
+def clopper_pearson_ends(count: np.ndarray, flights: np.ndarray, confidence: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the ends of many such intervals at once [-], each of the shape of the counts.
+
+    Notes
+    -----
+    They are quantiles of the beta distribution: of k in n the lower that of B(k, n − k + 1), the upper of
+    B(k + 1, n − k).
+    """
+    outside, rest = 0.5 - 0.5 * confidence, flights - count
+    low = scipy.special.betaincinv(np.maximum(count, 1), rest + 1, outside)
+    high = scipy.special.betaincinv(count + 1, np.maximum(rest, 1), 1.0 - outside)
+    return np.where(count == 0, 0.0, low), np.where(rest == 0, 1.0, high)
 
 
 def _from_scrambles(
@@ -101,5 +116,5 @@ def running(exceeded: np.ndarray, confidence: float = 0.95, points: int = 60) ->
     """
     flights = np.unique(np.geomspace(min(10, len(exceeded)), len(exceeded), points).astype(int))
     counts = np.cumsum(exceeded)[flights - 1]
-    ends = np.array([clopper_pearson1934(int(c), int(n), confidence) for c, n in zip(counts, flights, strict=True)])
-    return {"flights": flights, "probability": counts / flights, "low": ends[:, 0], "high": ends[:, 1]}
+    low, high = clopper_pearson_ends(counts, flights, confidence)
+    return {"flights": flights, "probability": counts / flights, "low": low, "high": high}

@@ -15,6 +15,7 @@ import xarray as xr
 
 from tethership._version import __version__
 from tethership.campaign.arrays import RESULTS, Arrays, zarr_library
+from tethership.campaign.engine import engine_name
 from tethership.campaign.manifest import MANIFEST, Manifest, read_manifest, write_manifest
 from tethership.campaign.marks import MARKS, Form, Mark, read_marks, write_mark
 from tethership.campaign.plan import Batch, Plan
@@ -98,10 +99,9 @@ class CampaignStore:
         ConfigError
             They cannot be written (disk full): what was written before stays readable.
         """
-        rows = slice(batch.first, batch.first + len(batch.values))
         with self._said():
             for name, values in found.items():
-                self._arrays.output(name, Form.of(values))[batch.law, rows] = values
+                self._arrays.write(name, batch, values)
         write_mark(self.folder, batch.number, self._digest, found, CURE)
 
     def _drop_damaged(self) -> None:
@@ -164,6 +164,11 @@ def owner(folder: Path, plan: Plan) -> Manifest | None:
         raise ConfigError(f"{folder / RESULTS} has no {MANIFEST} beside it; choose another --out")
     if known is not None and known.digest != digest:
         other = known.tethership != __version__
+        if not other and known.engine is not None and known.engine != engine_name():
+            raise ConfigError(
+                f"{folder} was flown by {known.engine}, here it would be {engine_name()}, whose last digits differ: "
+                "go on where it was begun, or choose another --out (TETHERSHIP_ENGINE=xla is alike on all machines)"
+            )
         what = f"a campaign of tethership {known.tethership}" if other else "another campaign"
         raise ConfigError(
             f"{folder} holds {what} ({known.name}, {known.cases} cases, seed {known.seed}); "
@@ -227,7 +232,7 @@ _AGAIN = "run the same command again, which flies again what is damaged"
 def _loaded(path: Path, manifest: Manifest) -> xr.Dataset:
     """Return what is in a group, or raise ConfigError where it is not what the campaign says."""
     try:
-        with warnings.catch_warnings(action="ignore"), xr.open_zarr(path, consolidated=False) as data:
+        with warnings.catch_warnings(action="ignore"), xr.open_zarr(path, chunks=None, consolidated=False) as data:
             sizes = {str(dim): size for dim, size in data.sizes.items()}
             whole = (sizes.get("law"), sizes.get("case")) == (len(manifest.laws), manifest.cases)
             inner = [size for dim, size in sizes.items() if dim not in ("law", "case")]

@@ -4,8 +4,10 @@ import functools
 import json
 
 import numpy as np
+import xarray as xr
 
 from tethership.analysis import trim
+from tethership.campaign.engine import engine_name
 from tethership.campaign.flights import Flyer
 from tethership.campaign.plan import Batch, Work
 from tethership.errors import ConfigError
@@ -25,7 +27,18 @@ def _scenario(work: Work) -> Scenario:
 
 @functools.lru_cache(maxsize=2)
 def _flyer(work: Work) -> Flyer:
+    if work.engine not in ("", engine_name()):
+        raise ConfigError(
+            f"a worker would fly by {engine_name()}, the campaign is flown by {work.engine}, and the last digits "
+            "differ: take workers of one kind, or set TETHERSHIP_ENGINE=xla for all"
+        )
     return Flyer(_scenario(work), work.names, np.array(work.example), work.lanes, work.step)
+
+
+def make_ready(work: Work) -> None:
+    """Make what all batches have in common, once, and load all that it takes."""
+    xr.Dataset({"value": ("time", [0.0])}, {"time": [0.0], "name": ["text"]}).mean()  # looks for Dask and pint, once
+    _flyer(work)
 
 
 def fly_batch(work: Work, batch: Batch) -> dict[str, np.ndarray]:

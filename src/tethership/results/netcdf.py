@@ -1,6 +1,6 @@
 """NetCDF files of this package: written whole with checksums, read with everything about them checked.
 
-Depends on: h5py, xarray, results.files, results.seal, results.schema, errors.
+Depends on: h5py, xarray, results.files, results.hdf5, results.seal, results.schema, errors.
 """
 
 import warnings
@@ -13,6 +13,7 @@ import xarray as xr
 from tethership._version import __version__
 from tethership.errors import ConfigError, TethershipWarning
 from tethership.results.files import write_atomically
+from tethership.results.hdf5 import netcdf_bytes
 from tethership.results.schema import FORMAT, UNSEALED, Kind
 from tethership.results.seal import check_dataset, sealed_dataset
 
@@ -21,14 +22,8 @@ MOST_BYTES = 4 * 2**30
 
 
 def content(dataset: xr.Dataset, kind: Kind) -> bytes:
-    """Return a dataset as the bytes of a netCDF file, with its checksums.
-
-    Notes
-    -----
-    HDF5 writes into memory: where it meets a full disk itself it ends the process.
-    """
-    packed = {name: {"zlib": True, "complevel": 1} for name in dataset.data_vars if dataset[name].size > 1000}
-    return bytes(sealed_dataset(dataset, kind.own).to_netcdf(engine="h5netcdf", encoding=packed))
+    """Return a dataset as the bytes of a netCDF file, with its checksums."""
+    return netcdf_bytes(sealed_dataset(dataset, kind.own))
 
 
 def write(dataset: xr.Dataset, path: Path, kind: Kind) -> None:

@@ -5,7 +5,6 @@ hull's shape or the anchors' places are read once for all. Every flight ends by 
 the batch goes on until three of four have ended, then the rest go on without them.
 """
 
-import math
 from typing import NamedTuple
 
 import equinox as eqx
@@ -16,6 +15,7 @@ from jaxtyping import Array, Bool, Float, Int
 
 from tethership.plant import ClosedLoop
 from tethership.results import averages
+from tethership.simulation.beats import Beat, Clock
 from tethership.simulation.events import MARGINS, StopConditions
 from tethership.simulation.outcome import Outcome
 from tethership.simulation.tally import Signals, Tally, add, begin, signals
@@ -32,43 +32,6 @@ WIDE = 96
 
 CODES = (*MARGINS, Outcome.time_limit, Outcome.diverged)
 """Outcomes by the number that a batch gives."""
-
-
-class Beat(NamedTuple):
-    """One step, or the steps of a period of a sampled law, one after the other.
-
-    Attributes
-    ----------
-    step : Float[Array, "..."]
-        h [s].
-    looks, acts : Bool[Array, "..."]
-        What a sampled law does at its start; where it does both, it acts first.
-    """
-
-    step: Float[Array, "..."]
-    looks: Bool[Array, "..."]
-    acts: Bool[Array, "..."]
-
-
-def beats_of(step: float, period: float | None = None, delay: float | None = None) -> Beat:
-    """Return the steps of a batch: all alike, or such that a sampled law's ticks fall between two of them.
-
-    Parameters
-    ----------
-    step : float
-        Longest step h [s].
-    period, delay : float, optional
-        T and d of a sampled law [s].
-    """
-    if period is None:
-        no = jnp.zeros(1, dtype=bool)
-        return Beat(jnp.full(1, step), no, no)
-    cut = delay if delay is not None and delay < period else 0.0
-    counts = [math.ceil(part / step - 1e-9) for part in (cut, period - cut)]
-    steps = [part / count for part, count in zip((cut, period - cut), counts, strict=True) for _ in range(count)]
-    place = jnp.arange(sum(counts))
-    acts = (place == counts[0]) if delay is not None else jnp.zeros(sum(counts), dtype=bool)
-    return Beat(jnp.asarray(steps), place == 0, acts)
 
 
 class Lane(NamedTuple):
@@ -187,6 +150,38 @@ def _started(loop: ClosedLoop, stop: StopConditions, limits: Float[Array, "limit
     return Lane(vector, slope, margins, begin(now, limits), finite & (margins[worst] > 0.0), outcome)
 
 
+def fly_to_its_end(
+    loop: ClosedLoop,
+    stop: StopConditions,
+    limits: Float[Array, "limits"],
+    vector: Float[Array, "n"],
+    time_limit: Float[Array, ""],
+    rhythm: Beat,
+) -> BatchResult:
+    """Fly one flight to its end, as `fly_lanes` flies many; to be compiled over lanes by the caller.
+
+    Parameters
+    ----------
+    loop : ClosedLoop
+    stop, limits, time_limit, rhythm
+        As in `fly_lanes`.
+    vector : Float[Array, "n"]
+        Start.
+    """
+    clock = Clock.of(rhythm)
+
+    def unfinished(carry: tuple[Array, Lane]) -> Array:
+        return carry[1].active & (clock.time(carry[0]) < time_limit - 1e-9)
+
+    def forward(carry: tuple[Array, Lane]) -> tuple[Array, Lane]:
+        count, now = carry
+        return count + 1, _stepped(loop, stop, limits, clock.time(count), now, clock.beat(count))
+
+    begun = _started(loop, stop, limits, vector)
+    _, lane = jax.lax.while_loop(unfinished, forward, (jnp.zeros((), int), begun))
+    return BatchResult(lane.tally, lane.outcome)
+
+
 def fly_lanes(
     loops: ClosedLoop,
     axes: ClosedLoop,
@@ -217,25 +212,17 @@ def fly_lanes(
     """
     lanes = jax.vmap(_started, in_axes=(axes, None, None, -1), out_axes=-1)(loops, stop, limits, vectors)
     advance = jax.vmap(_stepped, in_axes=(axes, None, None, None, -1, None), out_axes=-1)
-    beats = len(rhythm.step)
-    starts, whole = jnp.cumsum(rhythm.step) - rhythm.step, jnp.sum(rhythm.step)
-    only = jax.tree.map(lambda part: part[0], rhythm)
-
-    def time_of(count: Int[Array, ""]) -> Float[Array, ""]:
-        return count * only.step if beats == 1 else (count // beats) * whole + starts[count % beats]
-
-    def beat_of(count: Int[Array, ""]) -> Beat:
-        return only if beats == 1 else jax.tree.map(lambda part: part[count % beats], rhythm)
+    clock = Clock.of(rhythm)
 
     def onward(loops: ClosedLoop, count: Int[Array, ""], lanes: Lane, fewest: int) -> tuple[Int[Array, ""], Lane]:
         """Fly from a number of steps on until no more than so many flights are under way, or the time is up."""
 
         def unfinished(carry: tuple[Array, Lane]) -> Array:
-            return (jnp.sum(carry[1].active) > fewest) & (time_of(carry[0]) < time_limit - 1e-9)
+            return (jnp.sum(carry[1].active) > fewest) & (clock.time(carry[0]) < time_limit - 1e-9)
 
         def forward(carry: tuple[Array, Lane]) -> tuple[Array, Lane]:
             count, now = carry
-            return count + 1, advance(loops, stop, limits, time_of(count), now, beat_of(count))
+            return count + 1, advance(loops, stop, limits, clock.time(count), now, clock.beat(count))
 
         return jax.lax.while_loop(unfinished, forward, (count, lanes))
 

@@ -2,7 +2,8 @@
 
 import csv
 import io
-from collections.abc import Iterable, Iterator
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -52,25 +53,17 @@ def write_flights(folder: Path, plan: Plan, data: xr.Dataset, flags: dict[str, n
     return _written(folder / "flights.csv", head, _flights(plan, data, flags))
 
 
-def _flights(plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray]) -> Iterator[list[Any]]:
-    """Yield a row for each flight."""
+def _flights(plan: Plan, data: xr.Dataset, flags: dict[str, np.ndarray]) -> Iterator[tuple[Any, ...]]:
+    """Yield a row for each flight, law by law; plain numbers, which are written several times as fast as numpy's."""
     ended, lost = outcomes(data), failed(data)
-    metrics = [data[name].values for name in KEPT]
-    for law, case in np.ndindex(ended.shape):
-        numbers = (metric[law, case] for metric in metrics)
-        passed = (int(of[law, case]) for of in flags.values())
-        yield [
-            plan.laws[law].name,
-            case,
-            *plan.sample.values[case],
-            ended[law, case],
-            int(lost[law, case]),
-            *numbers,
-            *passed,
-        ]
+    for law, chosen in enumerate(plan.laws):
+        measured = [data[name].values[law] for name in KEPT]
+        passed = [of[law].astype(int) for of in flags.values()]
+        columns = [*plan.sample.values.T, ended[law], lost[law].astype(int), *measured, *passed]
+        yield from zip(itertools.repeat(chosen.name), range(plan.cases), *(column.tolist() for column in columns))
 
 
-def _written(path: Path, head: list[str], rows: Iterable[list[Any]]) -> Path:
+def _written(path: Path, head: list[str], rows: Iterable[Sequence[Any]]) -> Path:
     """Write a table as CSV; returns where."""
     text = io.StringIO(newline="")
     writer = csv.writer(text)

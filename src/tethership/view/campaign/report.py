@@ -298,8 +298,8 @@ def _checks(answers: dict[str, Any]) -> Section:
 
 def _figure(folder: Path, name: str, drawn: Axes | Drawing, caption: str) -> Figure:
     """Write a picture and return it as a figure of the report."""
-    path = folder / "figures" / f"{name}.png"
     drawing = drawn if isinstance(drawn, Drawing) else drawn.get_figure(root=True)
     assert drawing is not None, "axes of a new figure have one"
-    write_atomically(path, png(drawing, 140), CURE)
-    return Figure(caption, path, None, caption)
+    picture = png(drawing, 140)
+    write_atomically(folder / "figures" / f"{name}.png", picture, CURE)
+    return Figure(caption, picture, None, caption)

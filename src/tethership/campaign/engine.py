@@ -1,0 +1,152 @@
+"""What flies a batch: a program compiled over lanes of flights, or XLA's. Depends on: lanes, simulation.
+
+One program flies all flights of a structure, whatever differs between them: every number is each flight's own. XLA's
+program, the reference, holds once what all share.
+"""
+
+import os
+import warnings
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import platformdirs
+from jaxtyping import Array, Float
+
+from tethership.errors import ConfigError, TethershipWarning, shown
+from tethership.lanes import NotCompiled, Program, identity
+from tethership.plant import ClosedLoop
+from tethership.simulation import BatchResult, Beat, StopConditions, differing, fly_lanes, fly_to_its_end, hoisted
+
+ENGINES = ("lanes", "xla")
+"""What may be asked for in `TETHERSHIP_ENGINE`."""
+
+
+class Terms(NamedTuple):
+    """What all flights of a batch have in common, as `fly_lanes` takes it."""
+
+    stop: StopConditions
+    limits: Float[Array, "limits"]
+    time_limit: Float[Array, ""]
+    rhythm: Beat
+
+
+Engine = Callable[[ClosedLoop, Float[Array, "n flights"], int], BatchResult]
+"""Flies loops and starts, the flight last, on so many threads."""
+
+_programs: dict[Any, Program | NotCompiled] = {}
+
+
+def find_engine(loops: ClosedLoop, vectors: Float[Array, "n flights"], terms: Terms) -> Engine:
+    """Return what flies a batch: lanes, or where they cannot be compiled XLA, which one warning says.
+
+    Parameters
+    ----------
+    loops : ClosedLoop
+        Examples that differ in every number that may, the flight last.
+    vectors : Float[Array, "n flights"]
+        Their starts.
+    terms : Terms
+
+    Raises
+    ------
+    ConfigError
+        `TETHERSHIP_ENGINE` names another engine.
+    """
+    asked = os.environ.get("TETHERSHIP_ENGINE") or "lanes"
+    if asked not in ENGINES:
+        raise ConfigError(f"TETHERSHIP_ENGINE is {shown(asked)}; set {' or '.join(ENGINES)}, or leave it out")
+    if asked == "lanes":
+        program = _program(loops, vectors, terms)
+        if isinstance(program, Program):
+            return by_lanes(program, terms)
+    return by_xla(differing(loops), terms)
+
+
+def by_lanes(program: Program, terms: Terms) -> Engine:
+    """Return an engine that flies by a program of `compile_flights`."""
+
+    def fly(loops: ClosedLoop, vectors: Float[Array, "n flights"], threads: int) -> BatchResult:
+        arrays = jax.tree.leaves(eqx.filter(loops, eqx.is_array))
+        shared = jax.tree.leaves(eqx.filter(terms, eqx.is_array))
+        return program(shared, (arrays, vectors), threads)
+
+    return fly
+
+
+_flown = eqx.filter_jit(fly_lanes)
+
+
+def by_xla(differ: tuple[bool, ...], terms: Terms) -> Engine:
+    """Return an engine that flies by XLA, for loops of which these arrays differ (`differing`)."""
+
+    def fly(loops: ClosedLoop, vectors: Float[Array, "n flights"], threads: int) -> BatchResult:
+        held, axes = hoisted(loops, differ)
+        return _flown(held, axes, terms.stop, terms.limits, vectors, terms.time_limit, terms.rhythm)
+
+    return fly
+
+
+def _program(loops: ClosedLoop, vectors: Float[Array, "n flights"], terms: Terms) -> Program | NotCompiled:
+    """Return the program of flights of this structure, made once a process, or why there is none."""
+    leaves, rest = _parted((loops, terms))
+    key = (rest, tuple((leaf.shape, str(leaf.dtype)) for leaf in leaves))
+    if key not in _programs:
+        try:
+            _programs[key] = compile_flights(loops, vectors, terms)
+        except NotCompiled as error:
+            warnings.warn(f"batches are flown by XLA, some ten times slower: {error}", TethershipWarning, stacklevel=3)
+            _programs[key] = error
+    return _programs[key]
+
+
+def compile_flights(
+    loops: ClosedLoop, vectors: Float[Array, "n flights"], terms: Terms, width: int | None = None
+) -> Program:
+    """Return the program that flies loops and starts of this structure to their ends.
+
+    Parameters
+    ----------
+    loops, vectors, terms
+        As in `find_engine`.
+    width : int, optional
+        Flights in a vector.
+
+    Raises
+    ------
+    NotCompiled
+        There is no compiler, or the plant uses a primitive that is not known.
+    """
+    (loop_leaves, loop_rest), (term_leaves, term_rest) = _parted(loops), _parted(terms)
+
+    def flight(shared: list[Array], own: tuple[list[Array], Array]) -> BatchResult:
+        common, loop = _whole(shared, term_rest), _whole(own[0], loop_rest)
+        return fly_to_its_end(loop, common.stop, common.limits, own[1], common.time_limit, common.rhythm)
+
+    own = jax.tree.map(lambda leaf: leaf[..., 0], (loop_leaves, vectors))
+    return Program(flight, term_leaves, own, width, platformdirs.user_cache_path("tethership") / "lanes")
+
+
+def _parted(tree: Any) -> tuple[list[Array], Any]:
+    """Return the arrays of a PyTree, and the rest as something that tells structures apart."""
+    arrays, rest = eqx.partition(tree, eqx.is_array)
+    leaves, structure = jax.tree.flatten(arrays)
+    others, other_structure = jax.tree.flatten(rest)
+    return leaves, (structure, tuple(others), other_structure)
+
+
+def _whole(leaves: Any, rest: Any) -> Any:
+    """Undo `_parted`."""
+    structure, others, other_structure = rest
+    return eqx.combine(structure.unflatten(leaves), other_structure.unflatten(others))
+
+
+def engine_name() -> str:
+    """Return what flies batches here: "xla", or width, compiler and processor of lanes; two never mix in a campaign."""
+    if (os.environ.get("TETHERSHIP_ENGINE") or "lanes") == "xla":
+        return "xla"
+    try:
+        return identity()
+    except NotCompiled:
+        return "xla"
