@@ -14,6 +14,7 @@ import jax.numpy as jnp
 import optimistix
 from jaxtyping import Array, Bool, Float, Int
 
+from tethership._kept import kept
 from tethership.plant import ClosedLoop
 from tethership.scenario import SolverConfig
 from tethership.simulation.events import StopConditions
@@ -240,7 +241,7 @@ def solved(
     )
 
 
-@eqx.filter_jit
+@kept
 def fly_segment(
     loop: ClosedLoop,
     stop: StopConditions,

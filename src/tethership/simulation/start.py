@@ -5,11 +5,11 @@ Depends on: plant, scenario.
 
 from typing import Any, Protocol
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.errors import ConfigError
 from tethership.plant import (
     DRIFT_LIMIT,
@@ -73,17 +73,17 @@ def moved_start(start: StartConfig, plant: TetheredAirship, trimmed: State) -> S
     return State(velocity, trimmed.rates, attitude, trimmed.position + moved)
 
 
-_moved = eqx.filter_jit(moved_start)
+_moved = kept(moved_start)
 
 
-@eqx.filter_jit
+@kept
 def begin(loop: ClosedLoop, stop: StopConditions, state: State) -> tuple[Array, Array]:
     """Return the integrator's vector at the start, t = 0, shape (n,), and the margins there [m, -, m, rad]."""
     vector = loop.initial(state)
     return vector, stop.margins(loop, jnp.zeros(()), vector)
 
 
-@eqx.filter_jit
+@kept
 def _balance(
     plant: TetheredAirship, state: State, command: Command, turning: Float[Array, "3"] | None
 ) -> tuple[Array, Array]:

@@ -5,12 +5,12 @@ Depends on: analysis.linear.right_side, analysis.linear.outputs, analysis.linear
 
 from typing import Any, NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.analysis.linear.closed import closed_model
 from tethership.analysis.linear.differences import central_differences
 from tethership.analysis.linear.model import LinearModel
@@ -114,7 +114,7 @@ def comparable_coordinates(plant: TetheredAirship, state: Float[Array, "n"]) -> 
     return scale[:, None] * jax.jacfwd(coordinates)(state)
 
 
-@eqx.filter_jit
+@kept
 def _exact(
     plant: TetheredAirship, state: Float[Array, "n"], inputs: Float[Array, "inputs"]
 ) -> tuple[Matrices, Float[Array, "n n"], Float[Array, "6"], Float[Array, "6 6"]]:

@@ -7,11 +7,11 @@ once.
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.analysis.trim.solve import Problem
 from tethership.analysis.trim.unknowns import DOWN, Unknowns, find_places, find_unknowns
 from tethership.errors import ConfigError
@@ -121,7 +121,7 @@ def pose(config: ScenarioConfig, plant: TetheredAirship, question: Question) -> 
     return Problem(plant.at_mean(), base, question.unknowns, question.hold, given)
 
 
-@eqx.filter_jit
+@kept
 def posed(config: ScenarioConfig, plant: TetheredAirship, question: Question) -> Problem:
     """Return `pose`, compiled."""
     return pose(config, plant, question)

@@ -14,6 +14,7 @@ import numpy as np
 import scipy.optimize
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.analysis.trim.unknowns import Unknowns
 from tethership.plant import RESIDUAL_LIMIT, Command, State, TetheredAirship, drift, end_tension, residual
 from tethership.spatial import STANDARD_GRAVITY, body_rates, rotation_matrix, safe_norm
@@ -91,7 +92,7 @@ class Problem(eqx.Module):
         return range(0 if self.plant.cables else 3, 6)
 
 
-@eqx.filter_jit
+@kept
 def _balance(problem: Problem, values: Float[Array, "unknowns"]) -> tuple[Array, Array]:
     """Return the balance and its exact Jacobian."""
     return problem.balance(values), jax.jacfwd(problem.balance)(values)
@@ -206,7 +207,7 @@ class Described(NamedTuple):
     cables: Float[Array, "cables"]
 
 
-@eqx.filter_jit
+@kept
 def described(problem: Problem, values: Float[Array, "unknowns"]) -> Described:
     """Return what there is for values of the unknowns: state, tensions [N], residual [N, N m], heights [m] at t = 0.
 
