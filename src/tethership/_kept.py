@@ -17,6 +17,8 @@ from typing import Any, Generic, NamedTuple, ParamSpec, TypeVar
 
 import equinox as eqx
 import jax
+import jax.extend.core
+from jax.interpreters import mlir
 
 from tethership import _programs
 from tethership._outline import (
@@ -45,6 +47,13 @@ TRACED = (
 )
 """Settings by which somebody looks into programs, or has them run elsewhere: with any of them nothing kept is used."""
 
+_CALL = jax.extend.core.Primitive("kept_program")
+"""The call of an exported program. JAX binds what its own such call returns to a device: the next compiles anew."""
+
+_CALL.multiple_results = True
+_CALL.def_abstract_eval(lambda *given, exported: exported.out_avals)
+mlir.register_lowering(_CALL, mlir.lower_fun(lambda *given, exported: exported.call(*given), multiple_results=True))
+
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
 
@@ -71,8 +80,7 @@ class _Program(NamedTuple):
 
     def __call__(self, arrays: Iterable[Any]) -> Any:
         structure, others = restored_structure(self.result[0]), iter(restored(self.result[1]))
-        # what an exported program returns is bound to its device, and would have what is called next compiled anew
-        found = iter(jax.device_put(jax.device_get(self.call(*arrays))))
+        found = iter(self.call(*arrays) if any(self.result[2]) else ())
         return jax.tree.unflatten(structure, [next(found if is_array else others) for is_array in self.result[2]])
 
 
@@ -102,7 +110,7 @@ class Kept(Generic[Given, Result]):
 
     def _found(self, leaves: list[Any], structure: jax.tree_util.PyTreeDef) -> _Program | None:
         """Return the program for what is given, from the folder or made; None where it cannot be kept."""
-        if _programs.folder() is None or jax.default_backend() != "cpu":
+        if _programs.folder() is None:
             return None
         try:
             name = f"{self.__name__.strip('_')}-{_key(self, leaves, structure)}"
@@ -117,7 +125,8 @@ class Kept(Generic[Given, Result]):
         head, _, body = content.partition(b"\n")
         try:
             exported = jax.export.deserialize(bytearray(body))
-            return _Program(_named(exported.call, self.__name__), json.loads(head))
+            call = functools.partial(_CALL.bind, exported=exported)
+            return _Program(_named(call, self.__name__), json.loads(head))
         except Exception:  # of another version of its format, which no digest tells
             return None
 
@@ -162,7 +171,7 @@ def _named(call: Callable[..., Any], name: str) -> Any:
         return call(*arrays)
 
     program.__name__ = program.__qualname__ = name
-    return jax.jit(program, in_shardings=jax.sharding.SingleDeviceSharding(jax.devices()[0]))
+    return jax.jit(program)
 
 
 def _is_elsewhere() -> bool:
@@ -172,7 +181,9 @@ def _is_elsewhere() -> bool:
 
 def _form(leaf: Any) -> Hashable:
     """Return what of an argument makes another program."""
-    return jax.typeof(leaf) if eqx.is_array(leaf) else (type(leaf), leaf)
+    if not eqx.is_array(leaf):
+        return type(leaf), leaf
+    return leaf.shape, leaf.dtype, getattr(leaf, "weak_type", False)
 
 
 def _key(kept: Kept, leaves: list[Any], structure: jax.tree_util.PyTreeDef) -> str:

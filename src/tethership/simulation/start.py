@@ -86,9 +86,9 @@ def begin(loop: ClosedLoop, stop: StopConditions, state: State) -> tuple[Array, 
 @kept
 def _balance(
     plant: TetheredAirship, state: State, command: Command, turning: Float[Array, "3"] | None
-) -> tuple[Array, Array]:
-    """Return what a point leaves over in the mean air of a plant [N, N m], and the rates of what must stand still."""
-    return residual(plant.at_mean(), state, command), drift(plant, state, turning)
+) -> tuple[Array, Array, Array]:
+    """Return what a point leaves over in the mean air [N, N m], the rates of what must stand still, and the limit."""
+    return residual(plant.at_mean(), state, command), drift(plant, state, turning), residual_limit(plant)
 
 
 def check_point(scenario: Scenario, point: Start) -> None:
@@ -105,8 +105,8 @@ def check_point(scenario: Scenario, point: Start) -> None:
     turning = scenario.config.turning()
     given = None if turning is None else jnp.asarray(turning)
     found = _balance(scenario.system.with_a_gust(), point.state, point.command, given)
-    left, moving = (np.asarray(part) for part in found)
-    limit = 10.0 * float(residual_limit(scenario.system))
+    left, moving, limit = (np.asarray(part) for part in found)
+    limit = 10.0 * float(limit)
     worst = max(np.abs(left).max() / limit, np.abs(moving).max() / (10.0 * DRIFT_LIMIT))
     if not worst <= 1.0:
         raise ConfigError(

@@ -85,7 +85,7 @@ def ask(
             f"trim: turn_rate and pull_up_rate say what p, q and r are; take out {', '.join(sorted(rates))}"
         )
     places = find_places(tuple(fixed or ()), thrusters, fins)
-    values = jnp.asarray(list((fixed or {}).values()), dtype=float)
+    values = np.asarray(list((fixed or {}).values()), dtype=float)
     return Question(find_unknowns(names, thrusters, fins), hold, "psi" in names, places, values)
 
 

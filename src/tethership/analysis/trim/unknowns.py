@@ -1,7 +1,6 @@
 """Which quantities a trim looks for, by name. Depends on: plant.names, errors."""
 
 import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
@@ -84,7 +83,7 @@ def find_unknowns(
     index = sorted(set(index))
     scales = [*SCALES, *[1.0] * (len(thrusters) + len(fins))]
     efforts = [0.0] * 12 + [1.0] * (len(thrusters) + len(fins))
-    return Unknowns(tuple(index), jnp.asarray([scales[i] for i in index]), jnp.asarray([efforts[i] for i in index]))
+    return Unknowns(tuple(index), np.asarray([scales[i] for i in index]), np.asarray([efforts[i] for i in index]))
 
 
 def find_places(names: tuple[str, ...], thrusters: list[str], fins: list[str]) -> tuple[int, ...]:
