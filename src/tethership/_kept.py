@@ -13,16 +13,19 @@ import json
 import sys
 from collections.abc import Callable, Hashable, Iterable
 from pathlib import Path
-from typing import Any, Generic, NamedTuple, ParamSpec, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import equinox as eqx
 import jax
+import jax.core
+import jax.export
 import jax.extend.core
 from jax.interpreters import mlir
 
 from tethership import _programs
 from tethership._outline import (
     Outline,
+    Structure,
     UnknownCodeError,
     named,
     outline,
@@ -54,7 +57,6 @@ _CALL.multiple_results = True
 _CALL.def_abstract_eval(lambda *given, exported: exported.out_avals)
 mlir.register_lowering(_CALL, mlir.lower_fun(lambda *given, exported: exported.call(*given), multiple_results=True))
 
-Given = ParamSpec("Given")
 Result = TypeVar("Result")
 
 
@@ -76,23 +78,28 @@ class _Program(NamedTuple):
     """A kept program, and what its results make up."""
 
     call: Callable[..., list[jax.Array]]
-    result: Outline
+    structure: Structure
+    others: tuple[Any, ...]
+    are_arrays: tuple[bool, ...]
 
     def __call__(self, arrays: Iterable[Any]) -> Any:
-        structure, others = restored_structure(self.result[0]), iter(restored(self.result[1]))
-        found = iter(self.call(*arrays) if any(self.result[2]) else ())
-        return jax.tree.unflatten(structure, [next(found if is_array else others) for is_array in self.result[2]])
+        found, others = iter(self.call(*arrays) if any(self.are_arrays) else ()), iter(self.others)
+        return jax.tree.unflatten(self.structure, [next(found if array else others) for array in self.are_arrays])
 
 
-class Kept(Generic[Given, Result]):
+class Kept(Generic[Result]):
     """A function whose traced programs are kept; made by `kept`."""
 
-    def __init__(self, function: Callable[Given, Result]) -> None:
+    __name__: str
+    __qualname__: str
+    __wrapped__: Callable[..., Result]
+
+    def __init__(self, function: Callable[..., Result]) -> None:
         functools.update_wrapper(self, function)
         self._traced = eqx.filter_jit(function)
         self._programs: dict[Hashable, _Program | None] = {}
 
-    def __call__(self, *args: Given.args, **kwargs: Given.kwargs) -> Result:
+    def __call__(self, *args: Any, **kwargs: Any) -> Result:
         leaves, structure = jax.tree.flatten((args, kwargs))
         if _is_elsewhere() or any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
             return self._traced(*args, **kwargs)
@@ -108,7 +115,7 @@ class Kept(Generic[Given, Result]):
             self._programs[form] = None
             return self._traced(*args, **kwargs)
 
-    def _found(self, leaves: list[Any], structure: jax.tree_util.PyTreeDef) -> _Program | None:
+    def _found(self, leaves: list[Any], structure: Structure) -> _Program | None:
         """Return the program for what is given, from the folder or made; None where it cannot be kept."""
         if _programs.folder() is None:
             return None
@@ -126,11 +133,14 @@ class Kept(Generic[Given, Result]):
         try:
             exported = jax.export.deserialize(bytearray(body))
             call = functools.partial(_CALL.bind, exported=exported)
-            return _Program(_named(call, self.__name__), json.loads(head))
+            structure, others, are_arrays = json.loads(head)
+            return _Program(
+                _named(call, self.__name__), restored_structure(structure), restored(others), tuple(are_arrays)
+            )
         except Exception:  # of another version of its format, which no digest tells
             return None
 
-    def _made(self, name: str, leaves: list[Any], structure: jax.tree_util.PyTreeDef) -> _Program | None:
+    def _made(self, name: str, leaves: list[Any], structure: Structure) -> _Program | None:
         """Trace and lower, keep what comes of it, and return it as the next process will read it."""
         places = [i for i, leaf in enumerate(leaves) if eqx.is_array(leaf)]
         result: Outline = []
@@ -153,7 +163,7 @@ class Kept(Generic[Given, Result]):
         return self._read(content)
 
 
-def kept(function: Callable[Given, Result]) -> Kept[Given, Result]:
+def kept(function: Callable[..., Result]) -> Kept[Result]:
     """Return a function compiled as by `equinox.filter_jit`, whose traced programs are kept between processes.
 
     Parameters
@@ -186,10 +196,10 @@ def _form(leaf: Any) -> Hashable:
     return leaf.shape, leaf.dtype, getattr(leaf, "weak_type", False)
 
 
-def _key(kept: Kept, leaves: list[Any], structure: jax.tree_util.PyTreeDef) -> str:
+def _key(kept: Kept, leaves: list[Any], structure: Structure) -> str:
     """Return the digest of all that a program depends on; raises UnknownCodeError."""
     name = f"{kept.__module__}:{kept.__qualname__}"
-    if named(name) not in (kept, kept.__wrapped__):
+    if not Path(__file__).is_file() or named(name) not in (kept, kept.__wrapped__):
         raise UnknownCodeError(name)
     arrays = [_described(leaf) for leaf in leaves if eqx.is_array(leaf)]
     others = outline(tuple(None if eqx.is_array(leaf) else leaf for leaf in leaves))

@@ -24,6 +24,9 @@ _JOINED: Any = getattr(
 Outline = Any
 """What JSON can hold."""
 
+Structure = Any
+"""A structure, `jax.tree_util.PyTreeDef`."""
+
 
 class UnknownCodeError(Exception):
     """A structure has code, or a value, of which nobody knows whether it is the same in the next process."""
@@ -47,7 +50,7 @@ def restored(written: Outline) -> Any:
     return jax.tree.unflatten(restored_structure(structure), [_read(leaf) for leaf in leaves])
 
 
-def structure_outline(structure: jax.tree_util.PyTreeDef) -> Outline:
+def structure_outline(structure: Structure) -> Outline:
     """Return a structure as plain data: of each node its class, what the class adds, and its children; "*" for leaves.
 
     Raises
@@ -63,7 +66,7 @@ def structure_outline(structure: jax.tree_util.PyTreeDef) -> Outline:
     return [name_of(kind), added, [structure_outline(child) for child in structure.children()]]
 
 
-def restored_structure(written: Outline) -> jax.tree_util.PyTreeDef:
+def restored_structure(written: Outline) -> Structure:
     """Return the structure of which `structure_outline` was taken."""
     if written == "*":
         return jax.tree.structure(0)

@@ -261,7 +261,7 @@ def _turning(system: Scenario | TetheredAirship) -> Float[Array, "3"] | None:
 
 def _check_equilibrium(balance: _Balance) -> None:
     """Raise ConfigError where a point is not in equilibrium; the balance is in numpy arrays."""
-    residual, limit, moving = balance
+    residual, moving, limit = np.asarray(balance.residual), np.asarray(balance.drift), float(balance.limit)
     if not np.isfinite(residual).all():
         raise ConfigError("linearize: the point has loads that are not finite; check its state")
     force, moment = np.abs(residual[:3]).max(), np.abs(residual[3:]).max()

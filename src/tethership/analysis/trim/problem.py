@@ -41,7 +41,7 @@ class Question(NamedTuple):
     hold: bool
     heading_free: bool
     places: tuple[int, ...]
-    values: Float[Array, "given"]
+    values: Float[Array | np.ndarray, "given"]
 
     @property
     def height_sought(self) -> bool:

@@ -32,8 +32,8 @@ class Unknowns(eqx.Module):
     """
 
     index: tuple[int, ...] = eqx.field(static=True)
-    scale: Float[Array, "unknowns"]
-    effort: Float[Array, "unknowns"]
+    scale: Float[Array | np.ndarray, "unknowns"]
+    effort: Float[Array | np.ndarray, "unknowns"]
 
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the least and largest value of each in units of its scale: φ within ±π/2, θ within ±80π/180 [rad].
