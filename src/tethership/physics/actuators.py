@@ -52,7 +52,7 @@ class Actuators(eqx.Module):
 
     def rest(self, asked: Float[Array, "channels"]) -> Float[Array, "slow"]:
         """Return the states at which nothing changes any more [channel's unit]."""
-        return self.effective(asked)[jnp.asarray(self.slow, dtype=int)]
+        return self.effective(asked)[jnp.asarray(self.slow)] if self.slow else jnp.zeros(0)
 
     def output(self, own: Float[Array, "slow"], asked: Float[Array, "channels"]) -> Float[Array, "channels"]:
         """Return what the channels do [their unit]; those without a state do what is asked."""

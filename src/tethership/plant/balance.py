@@ -6,11 +6,11 @@ Balanced loads alone are none: with a pitch rate held at 0.1 rad/s they may bala
 must stand still is the attitude, and on a cable, whose anchor does, the ship itself.
 """
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.errors import ConfigError
 from tethership.plant.layout import part_layout
 from tethership.plant.plant import TetheredAirship
@@ -70,7 +70,7 @@ def drift(plant: TetheredAirship, state: State, turning: Float[Array, "3"] | Non
     return jnp.concatenate([turns, moving if drawn is None else moving - drawn])
 
 
-@eqx.filter_jit
+@kept
 def _part_rates(plant: TetheredAirship, state: State) -> Array:
     """Return how fast the states of parts of one's own change where they say they rest [their unit per second]."""
     now, mean = jnp.zeros(()), plant.at_mean()

@@ -6,6 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.plant.cable import Cable
 from tethership.plant.environment import Environment
 from tethership.spatial import safe_norm
@@ -33,7 +34,7 @@ class CableBetween(NamedTuple):
     regime: Float[Array, ""]
 
 
-@eqx.filter_jit
+@kept
 def cable_between(
     cable: Cable,
     environment: Environment,
@@ -68,7 +69,7 @@ def cable_between(
     return CableBetween(state.ship, state.anchor, state.load, lowest, regime)
 
 
-@eqx.filter_jit
+@kept
 def cable_along(
     cable: Cable, found: CableBetween, end: Float[Array, "3"], anchor: Float[Array, "3"], arc: Float[Array, "n"]
 ) -> tuple[Float[Array, "n 3"], Float[Array, "n"]]:

@@ -108,8 +108,10 @@ def open_state(plant: TetheredAirship, state: State, command: Command) -> Float[
     command : Command
         Throttles δ [-] and deflections [rad].
     """
-    now = jnp.zeros(())
     own = plant.actuators_at_rest(command)
+    if not plant.parts:
+        return jnp.concatenate([state.as_vector(), *own])
+    now = jnp.zeros(())
     cables = plant.cable_states(now, state, plant.initial_lengths())
     return jnp.concatenate([state.as_vector(), *own, *plant.parts_at_rest(now, state, cables)])
 

@@ -1,13 +1,12 @@
 """Ship, cables and parts of one's own together: one more named load for each of them. Depends on: physics, plant."""
 
 import dataclasses
-from typing import Any
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.errors import ConfigError
 from tethership.physics import Actuators, HarmonicMotion, SteadyMotion
 from tethership.plant.cable import Cable, CableState
@@ -232,24 +231,10 @@ def reading_names(plant: TetheredAirship) -> tuple[str, ...]:
     return tuple(name for name, part in parts if says(part, "reading"))
 
 
-_LOADS: dict[Any, tuple[str, ...]] = {}
-
-
+@kept
 def load_names(plant: TetheredAirship) -> tuple[str, ...]:
     """Return the names of all loads on the ship, by asking for the loads once for each structure of a plant."""
-    structure = jax.tree.structure(plant)
-    if structure not in _LOADS:
-        found: list[str] = []
-
-        def asked() -> Any:
-            now, state = jnp.zeros(()), State.at_rest(jnp.zeros(3))
-            ship = plant.ship
-            command = Command(jnp.zeros(ship.thrusters.count), jnp.zeros(ship.fins.count))
-            cables = plant.cable_states(now, state, plant.initial_lengths())
-            loads = plant.wrenches(now, state, command, cables)
-            found.extend(loads)
-            return loads
-
-        jax.eval_shape(asked)
-        _LOADS[structure] = tuple(found)
-    return _LOADS[structure]
+    now, state, ship = jnp.zeros(()), State.at_rest(jnp.zeros(3)), plant.ship
+    command = Command(jnp.zeros(ship.thrusters.count), jnp.zeros(ship.fins.count))
+    cables = plant.cable_states(now, state, plant.initial_lengths())
+    return tuple(plant.wrenches(now, state, command, cables))

@@ -3,10 +3,10 @@
 Everything is written with jax.numpy, so that a plant can be differentiated with respect to its numbers.
 """
 
-import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.physics import AbstractAnchorMotion, HarmonicMotion, SteadyMotion, Winch
 from tethership.physics.cable import AbstractTensionLaw, CableLoad, ElasticCatenary, PublishedTension
 from tethership.plant import Cable, PartNames, TetheredAirship
@@ -94,7 +94,7 @@ def _motion(config: AnchorMotionConfig | None) -> AbstractAnchorMotion | None:
             return HarmonicMotion(*map(jnp.asarray, (config.amplitude, config.period, config.phase)))
 
 
-@eqx.filter_jit
+@kept
 def _compiled(config: ScenarioConfig, reference_point: Float[Array, "3"]) -> TetheredAirship:
     return build_system(config, reference_point)
 

@@ -1,10 +1,10 @@
 """Flying: any scenario, any law, until something ends it. Depends on: simulation, scenario."""
 
 import dataclasses
+import importlib.metadata
 import platform
 from collections.abc import Iterable, Mapping
 
-import diffrax
 import jax
 import numpy as np
 
@@ -150,7 +150,7 @@ def _versions() -> dict[str, str]:
     return {
         "tethership": __version__,
         "jax": jax.__version__,
-        "diffrax": diffrax.__version__,
+        "diffrax": importlib.metadata.version("diffrax"),
         "numpy": np.__version__,
         "python": platform.python_version(),
     }

@@ -1,23 +1,26 @@
 """Integration of one segment of a flight with diffrax, sampled densely. Depends on: simulation, diffrax.
 
 A flight is flown in segments of a fixed number of samples, so that one compiled program serves flights of any
-length, progress can be shown and an interrupted flight keeps what was flown.
+length, progress can be shown and an interrupted flight keeps what was flown. Diffrax is imported when a program is
+traced: where a kept one is flown it is not needed.
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-import diffrax
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-import optimistix
 from jaxtyping import Array, Bool, Float, Int
 
+from tethership._kept import kept
 from tethership.plant import ClosedLoop
 from tethership.scenario import SolverConfig
 from tethership.simulation.events import StopConditions
 from tethership.simulation.record import record
+
+if TYPE_CHECKING:
+    import diffrax
 
 SAMPLES = 1600
 """Samples in a segment."""
@@ -28,13 +31,8 @@ FIRST_STEP = 0.01
 SEGMENT_STEPS = 512
 """Steps at most in one call; a segment that needs more is continued by another call."""
 
-METHODS = {
-    "tsit5": diffrax.Tsit5,
-    "dopri5": diffrax.Dopri5,
-    "dopri8": diffrax.Dopri8,
-    "kvaerno5": diffrax.Kvaerno5,
-}
-"""Solvers by the name a solver file gives."""
+METHODS = {"tsit5": "Tsit5", "dopri5": "Dopri5", "dopri8": "Dopri8", "kvaerno5": "Kvaerno5"}
+"""Solvers of diffrax by the name a solver file gives."""
 
 
 class Segment(NamedTuple):
@@ -109,8 +107,10 @@ class Stepping(eqx.Module):
         )
 
 
-def _controller(stepping: Stepping, corners: Float[Array, "n"]) -> diffrax.AbstractStepSizeController:
+def _controller(stepping: Stepping, corners: Float[Array, "n"]) -> "diffrax.AbstractStepSizeController":
     """Return the step-size controller, stepping on the corners of gusts."""
+    import diffrax
+
     if not stepping.adaptive:
         return diffrax.ConstantStepSize()
     controller = diffrax.PIDController(
@@ -212,9 +212,12 @@ def solved(
     vector : Float[Array, "n"]
         All states at the start, SI and radians.
     """
+    import diffrax
+    import optimistix
+
     solution = diffrax.diffeqsolve(
         diffrax.ODETerm(lambda t, y, _: field(jnp.asarray(t), y)),
-        METHODS[stepping.method](),
+        getattr(diffrax, METHODS[stepping.method])(),
         start,
         end,
         jnp.minimum(FIRST_STEP, stepping.largest_step) if stepping.adaptive else stepping.largest_step,
@@ -240,7 +243,7 @@ def solved(
     )
 
 
-@eqx.filter_jit
+@kept
 def fly_segment(
     loop: ClosedLoop,
     stop: StopConditions,

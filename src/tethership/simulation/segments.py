@@ -4,7 +4,6 @@ import dataclasses
 from collections.abc import Callable
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
@@ -75,7 +74,7 @@ def integrate(
             kept = _kept(segment)
             pieces.append(kept)
             done += len(kept["time"])
-            time, vector = float(segment.time), jnp.asarray(segment.vector)
+            time, vector = float(segment.time), segment.vector
             steps += int(segment.steps)
             outcome = _outcome(segment, time, time_limit, steps, solver.most_steps, interruption.raised)
             if progress is not None:
@@ -95,14 +94,14 @@ class _Smooth:
 
     def compile(self, vector: Array) -> None:
         """Have the program ready."""
-        nowhere = jnp.asarray(0.0), vector, jnp.asarray(1e-6), jnp.zeros(SAMPLES)
+        nowhere = np.asarray(0.0), vector, np.asarray(1e-6), np.zeros(SAMPLES)
         jax.block_until_ready(fly_segment(*self._fixed, *nowhere))
 
     def fly(self, time: float, done: int, vector: Array) -> Segment:
         """Fly on from a time [s] until which so many samples were kept."""
         times = (done + np.arange(SAMPLES)) * self._interval
         end = min(float(times[-1]), self._limit)
-        segment = fly_segment(*self._fixed, jnp.asarray(time), vector, jnp.asarray(end), jnp.asarray(times))
+        segment = fly_segment(*self._fixed, np.asarray(time), vector, np.asarray(end), times)
         return jax.device_get(segment)
 
 

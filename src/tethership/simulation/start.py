@@ -5,11 +5,11 @@ Depends on: plant, scenario.
 
 from typing import Any, Protocol
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.errors import ConfigError
 from tethership.plant import (
     DRIFT_LIMIT,
@@ -73,22 +73,22 @@ def moved_start(start: StartConfig, plant: TetheredAirship, trimmed: State) -> S
     return State(velocity, trimmed.rates, attitude, trimmed.position + moved)
 
 
-_moved = eqx.filter_jit(moved_start)
+_moved = kept(moved_start)
 
 
-@eqx.filter_jit
+@kept
 def begin(loop: ClosedLoop, stop: StopConditions, state: State) -> tuple[Array, Array]:
     """Return the integrator's vector at the start, t = 0, shape (n,), and the margins there [m, -, m, rad]."""
     vector = loop.initial(state)
     return vector, stop.margins(loop, jnp.zeros(()), vector)
 
 
-@eqx.filter_jit
+@kept
 def _balance(
     plant: TetheredAirship, state: State, command: Command, turning: Float[Array, "3"] | None
-) -> tuple[Array, Array]:
-    """Return what a point leaves over in the mean air of a plant [N, N m], and the rates of what must stand still."""
-    return residual(plant.at_mean(), state, command), drift(plant, state, turning)
+) -> tuple[Array, Array, Array]:
+    """Return what a point leaves over in the mean air [N, N m], the rates of what must stand still, and the limit."""
+    return residual(plant.at_mean(), state, command), drift(plant, state, turning), residual_limit(plant)
 
 
 def check_point(scenario: Scenario, point: Start) -> None:
@@ -105,8 +105,8 @@ def check_point(scenario: Scenario, point: Start) -> None:
     turning = scenario.config.turning()
     given = None if turning is None else jnp.asarray(turning)
     found = _balance(scenario.system.with_a_gust(), point.state, point.command, given)
-    left, moving = (np.asarray(part) for part in found)
-    limit = 10.0 * float(residual_limit(scenario.system))
+    left, moving, limit = (np.asarray(part) for part in found)
+    limit = 10.0 * float(limit)
     worst = max(np.abs(left).max() / limit, np.abs(moving).max() / (10.0 * DRIFT_LIMIT))
     if not worst <= 1.0:
         raise ConfigError(

@@ -6,12 +6,12 @@ that a flight of a thousand ticks is a handful of calls of one program.
 
 from typing import NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
+from tethership._kept import kept
 from tethership.plant import ClosedLoop
 from tethership.simulation.events import StopConditions
 from tethership.simulation.integrate import Segment, Stepping, least_traced, solved
@@ -76,7 +76,7 @@ class _Carry(NamedTuple):
     steps: Array
 
 
-@eqx.filter_jit
+@kept
 def _fly(
     loop: ClosedLoop,
     stop: StopConditions,

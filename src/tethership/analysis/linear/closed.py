@@ -8,13 +8,13 @@ one period, from just before a look to the next, is their product: exact, and di
 import dataclasses
 from typing import Any
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 import scipy.linalg
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.analysis.linear.model import LinearModel
 from tethership.control import AbstractLaw
 from tethership.physics import WindChange
@@ -35,7 +35,7 @@ def with_inputs(loop: ClosedLoop, inputs: Float[Array, "inputs"]) -> ClosedLoop:
     return dataclasses.replace(loop, trimmed=trimmed, plant=dataclasses.replace(loop.plant, environment=environment))
 
 
-@eqx.filter_jit
+@kept
 def loop_slopes(
     loop: ClosedLoop, vector: Float[Array, "n"], inputs: Float[Array, "inputs"]
 ) -> tuple[Float[Array, "n"], Float[Array, "n n"], Float[Array, "n inputs"]]:
@@ -65,7 +65,7 @@ def loop_slopes(
     return rate(together), slopes[:, : len(vector)], slopes[:, len(vector) :]
 
 
-@eqx.filter_jit
+@kept
 def _jumps(loop: ClosedLoop, vector: Float[Array, "n"]) -> tuple[Float[Array, "n n"], Float[Array, "n n"]]:
     """Return the slopes of what a sampled law does when it looks, and when it acts."""
     look = jax.jacfwd(lambda x: loop.look(jnp.zeros(()), x))(vector)
@@ -73,7 +73,7 @@ def _jumps(loop: ClosedLoop, vector: Float[Array, "n"]) -> tuple[Float[Array, "n
     return look, jax.jacfwd(loop.act)(vector) if delayed else jnp.eye(len(vector))
 
 
-@eqx.filter_jit
+@kept
 def _settled(loop: ClosedLoop, state: State) -> Float[Array, "n"]:
     """Return all states at a point; a sampled law has looked and acted."""
     vector = loop.initial(state)

@@ -4,11 +4,11 @@ Depends on: analysis.linear.right_side. Fourth order; where a load has a corner 
 the result is off by about the step.
 """
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.analysis.linear.right_side import right_side
 from tethership.plant import TetheredAirship
 
@@ -16,7 +16,7 @@ STEP = 1e-4
 """Step [m, m/s, rad, rad/s, -]: truncation step⁴ f⁽⁵⁾/30, rounding 1e-15/step."""
 
 
-@eqx.filter_jit
+@kept
 def central_differences(
     plant: TetheredAirship, state: Float[Array, "12"], inputs: Float[Array, "inputs"]
 ) -> tuple[Float[Array, "12 12"], Float[Array, "12 inputs"]]:

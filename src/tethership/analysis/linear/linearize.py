@@ -5,12 +5,12 @@ Depends on: analysis.linear.right_side, analysis.linear.outputs, analysis.linear
 
 from typing import Any, NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.analysis.linear.closed import closed_model
 from tethership.analysis.linear.differences import central_differences
 from tethership.analysis.linear.model import LinearModel
@@ -114,18 +114,30 @@ def comparable_coordinates(plant: TetheredAirship, state: Float[Array, "n"]) -> 
     return scale[:, None] * jax.jacfwd(coordinates)(state)
 
 
-@eqx.filter_jit
+class _Balance(NamedTuple):
+    """What is left over at a point [N, N m], its limit, and the rates of what must stand still [rad/s, m/s]."""
+
+    residual: Float[Array, "6"]
+    limit: Float[Array, ""]
+    drift: Float[Array, "motions"]
+
+
+@kept
 def _exact(
-    plant: TetheredAirship, state: Float[Array, "n"], inputs: Float[Array, "inputs"]
-) -> tuple[Matrices, Float[Array, "n n"], Float[Array, "6"], Float[Array, "6 6"]]:
-    """Return A and U, the comparable coordinates, the force and moment left over [N, N m], Mⁱ + Mᵃ over half hulls."""
+    plant: TetheredAirship,
+    state: Float[Array, "n"],
+    inputs: Float[Array, "inputs"],
+    turning: Float[Array, "3"] | None,
+) -> tuple[Matrices, Float[Array, "n n"], _Balance, Float[Array, "6 6"]]:
+    """Return A and U, the comparable coordinates, what is left over, Mⁱ + Mᵃ over half hulls."""
     here = State.from_vector(state)
     left = -plant.ship.body.gyroscopic(here.velocity, here.rates).as_vector()
     residual = sum(loads(plant, state, inputs).values(), left)
     reach = 0.5 * plant.ship.outline.station[-1]
     scale = jnp.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]) + jnp.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]) * reach
     mass = mass_matrix(here, plant.ship, plant.environment) / jnp.outer(scale, scale)
-    return differentiate(plant, state, inputs), comparable_coordinates(plant, state), residual, mass
+    left_over = _Balance(residual, residual_limit(plant), drift(plant, here, turning))
+    return differentiate(plant, state, inputs), comparable_coordinates(plant, state), left_over, mass
 
 
 def linearize(
@@ -193,10 +205,10 @@ def linearize(
     vector, inputs = open_state(plant, state, command), input_vector(plant, command)
     if not np.isfinite(np.asarray(vector)).all():
         raise ConfigError("linearize: the point has states that are not finite; check its state")
-    exact, comparable, residual, mass = _exact(plant, vector, inputs)
+    exact, comparable, balance, mass = _exact(plant, vector, inputs, _turning(system))
     _check_dividable(np.asarray(mass), float(state.attitude[1]))
     if require_equilibrium:
-        _check_equilibrium(plant, state, np.asarray(residual), _turning(system))
+        _check_equilibrium(jax.device_get(balance))
     matrices = _by_route(route, exact, plant, vector, inputs)
     names, units = _inputs(system)
     first_length = len(names) - len(plant.cables)
@@ -247,11 +259,9 @@ def _turning(system: Scenario | TetheredAirship) -> Float[Array, "3"] | None:
     return None if turning is None else jnp.asarray(turning)
 
 
-def _check_equilibrium(
-    plant: TetheredAirship, state: State, residual: np.ndarray, turning: Float[Array, "3"] | None
-) -> None:
-    """Raise ConfigError where a point is not in equilibrium."""
-    limit, moving = float(residual_limit(plant)), np.asarray(drift(plant, state, turning))
+def _check_equilibrium(balance: _Balance) -> None:
+    """Raise ConfigError where a point is not in equilibrium; the balance is in numpy arrays."""
+    residual, moving, limit = np.asarray(balance.residual), np.asarray(balance.drift), float(balance.limit)
     if not np.isfinite(residual).all():
         raise ConfigError("linearize: the point has loads that are not finite; check its state")
     force, moment = np.abs(residual[:3]).max(), np.abs(residual[3:]).max()

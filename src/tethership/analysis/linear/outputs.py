@@ -7,12 +7,12 @@ by the same names (`results.schema`), and the two angles, which a flight has as 
 
 from typing import NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.analysis.linear.right_side import unpack_inputs
 from tethership.plant import TetheredAirship, reading_names, split_open
 from tethership.spatial import rotation_matrix, safe_norm
@@ -77,7 +77,7 @@ def measure(
     )
 
 
-@eqx.filter_jit
+@kept
 def _slopes(
     plant: TetheredAirship, state: Float[Array, "n"], inputs: Float[Array, "inputs"]
 ) -> tuple[Float[Array, "m"], Float[Array, "m n"]]:

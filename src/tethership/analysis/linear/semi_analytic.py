@@ -11,12 +11,12 @@ with the operator of Eq. 4: Δw × Mⁱw₀ = (Δω × p, Δv × p + Δω × H).
 
 from typing import NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.analysis.linear.right_side import loads
 from tethership.plant import State, TetheredAirship, mass_matrix
 from tethership.spatial import euler_rate_matrix, rotation_matrix, skew
@@ -120,7 +120,7 @@ def _stiffness(plant: TetheredAirship, state: State) -> Float[Array, "12 12"]:
     return jnp.vstack([jnp.hstack([top, jnp.zeros((6, 6))]), kinematics])
 
 
-@eqx.filter_jit
+@kept
 def semi_analytic(plant: TetheredAirship, state: Float[Array, "12"], inputs: Float[Array, "inputs"]) -> SemiAnalytic:
     """Return mass, stiffness and sensitivity matrices at an equilibrium.
 

@@ -10,12 +10,12 @@ shorter ones. The batch is the last axis.
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.analysis.linear.closed import state_matrix
 from tethership.analysis.linear.linearize import comparable_coordinates
 from tethership.analysis.linear.right_side import input_vector, right_side
@@ -121,7 +121,7 @@ def nearby_equilibrium(problem: Problem, start: Float[Array, "unknowns"]) -> Flo
     return jax.lax.while_loop(unfinished, step, (jnp.zeros((), int), start, jnp.asarray(jnp.inf)))[1]
 
 
-@eqx.filter_jit
+@kept
 def _solve_batch(
     config: ScenarioConfig,
     places: tuple[tuple[int, ...], ...],

@@ -5,12 +5,12 @@ Depends on: analysis, scenario. The theory is in the docstring of `analysis.loci
 
 from collections.abc import Sequence
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.analysis.linear.right_side import input_vector, right_side
 from tethership.analysis.trim.problem import Question, ask, pose, posed
 from tethership.analysis.trim.solve import Problem
@@ -91,7 +91,7 @@ def _one_sided(
     return (here - before) / steps[:, None, None], (after - here) / steps[:, None, None]
 
 
-@eqx.filter_jit
+@kept
 def _matrices(
     config: ScenarioConfig,
     places: tuple[tuple[int, ...], ...],
@@ -170,7 +170,7 @@ def _retrimmed(
     return total, balance[:, :count] + slope @ moved, balance[:, :count], moved
 
 
-@eqx.filter_jit
+@kept
 def _slopes(
     config: ScenarioConfig,
     places: tuple[tuple[int, ...], ...],

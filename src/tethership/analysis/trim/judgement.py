@@ -47,7 +47,7 @@ class Judged(NamedTuple):
     clearance_cable: float | None
 
 
-def judge(scenario: Scenario, found: Described, limit: float, height_sought: bool) -> Judged:
+def judge(scenario: Scenario, found: Described, height_sought: bool) -> Judged:
     """Return what is said of one point of a scenario.
 
     Parameters
@@ -55,13 +55,11 @@ def judge(scenario: Scenario, found: Described, limit: float, height_sought: boo
     scenario : Scenario
         Says limits, ground, thrusters and fins.
     found : Described
-        What there is at the point.
-    limit : float
-        Largest residual of an equilibrium [N, N m].
+        What there is at the point, as numpy arrays.
     height_sought : bool
         As in `outcomes`.
     """
-    config = scenario.config
+    config, limit = scenario.config, float(found.limit)
     saturated = _beyond(scenario, found)
     rows = Points(*(np.asarray(part)[None] for part in (found.residual, found.drift, found.hull, found.cables)))
     [outcome] = outcomes(rows, np.array([bool(saturated)]), np.array([limit]), config.has_ground(), height_sought)
@@ -79,8 +77,7 @@ def judge(scenario: Scenario, found: Described, limit: float, height_sought: boo
 
 def _beyond(scenario: Scenario, found: Described) -> dict[str, str]:
     """Return name → what would be needed of every thruster and fin asked for more than it has."""
-    vehicle, command = scenario.config.vehicle, found.command
-    allowed = scenario.system.ship.allowed(command)
+    vehicle, command, allowed = scenario.config.vehicle, found.command, found.allowed
     needs: dict[str, str] = {}
     for thruster, asked, has in zip(vehicle.thrusters, command.throttle, allowed.throttle, strict=True):
         if asked != has:

@@ -7,11 +7,11 @@ once.
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.analysis.trim.solve import Problem
 from tethership.analysis.trim.unknowns import DOWN, Unknowns, find_places, find_unknowns
 from tethership.errors import ConfigError
@@ -41,7 +41,7 @@ class Question(NamedTuple):
     hold: bool
     heading_free: bool
     places: tuple[int, ...]
-    values: Float[Array, "given"]
+    values: Float[Array | np.ndarray, "given"]
 
     @property
     def height_sought(self) -> bool:
@@ -85,7 +85,7 @@ def ask(
             f"trim: turn_rate and pull_up_rate say what p, q and r are; take out {', '.join(sorted(rates))}"
         )
     places = find_places(tuple(fixed or ()), thrusters, fins)
-    values = jnp.asarray(list((fixed or {}).values()), dtype=float)
+    values = np.asarray(list((fixed or {}).values()), dtype=float)
     return Question(find_unknowns(names, thrusters, fins), hold, "psi" in names, places, values)
 
 
@@ -121,7 +121,7 @@ def pose(config: ScenarioConfig, plant: TetheredAirship, question: Question) -> 
     return Problem(plant.at_mean(), base, question.unknowns, question.hold, given)
 
 
-@eqx.filter_jit
+@kept
 def posed(config: ScenarioConfig, plant: TetheredAirship, question: Question) -> Problem:
     """Return `pose`, compiled."""
     return pose(config, plant, question)

@@ -14,8 +14,18 @@ import numpy as np
 import scipy.optimize
 from jaxtyping import Array, Float
 
+from tethership._kept import kept
 from tethership.analysis.trim.unknowns import Unknowns
-from tethership.plant import RESIDUAL_LIMIT, Command, State, TetheredAirship, drift, end_tension, residual
+from tethership.plant import (
+    RESIDUAL_LIMIT,
+    Command,
+    State,
+    TetheredAirship,
+    drift,
+    end_tension,
+    residual,
+    residual_limit,
+)
 from tethership.spatial import STANDARD_GRAVITY, body_rates, rotation_matrix, safe_norm
 
 EFFORT = 1e-3
@@ -91,7 +101,7 @@ class Problem(eqx.Module):
         return range(0 if self.plant.cables else 3, 6)
 
 
-@eqx.filter_jit
+@kept
 def _balance(problem: Problem, values: Float[Array, "unknowns"]) -> tuple[Array, Array]:
     """Return the balance and its exact Jacobian."""
     return problem.balance(values), jax.jacfwd(problem.balance)(values)
@@ -119,8 +129,9 @@ def solve(problem: Problem) -> np.ndarray:
     start = problem.unknowns.taken(np.asarray(problem.base))
     best, least = start, np.inf
     low, high = problem.unknowns.bounds()
+    states = np.asarray(problem.unknowns.effort) == 0
     for bounded, scale, shift in itertools.product((False, True), (1.0, "jac"), (0.0, 0.3, -0.3, 1.0)):
-        begin = np.clip(start + shift * (problem.unknowns.effort == 0), low, high)
+        begin = np.clip(start + shift * states, low, high)
         try:
             found = _polished(problem, _searched(problem, begin, scale, bounded))
         except ValueError:  # loads or their slopes are not finite there: no search begins or goes on
@@ -135,13 +146,13 @@ def solve(problem: Problem) -> np.ndarray:
 
 def _evaluated(problem: Problem, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return `_balance` as numpy arrays."""
-    residual, jacobian = _balance(problem, jnp.asarray(values))
+    residual, jacobian = _balance(problem, values)
     return np.asarray(residual), np.asarray(jacobian)
 
 
 def _searched(problem: Problem, start: np.ndarray, scale: float | str, bounded: bool) -> np.ndarray:
     """Return where least squares over residual and effort ends, from a start in the unknowns' units."""
-    effort = np.asarray(EFFORT * problem.unknowns.effort)
+    effort = EFFORT * np.asarray(problem.unknowns.effort)
 
     def misfit(values: np.ndarray) -> np.ndarray:
         return np.concatenate([_evaluated(problem, values)[0], effort * values])
@@ -181,8 +192,10 @@ class Described(NamedTuple):
 
     Attributes
     ----------
-    state, command
-        Of the ship; the command as it was found, not clipped.
+    state, command, allowed
+        Of the ship; the command as it was found, and clipped to its limits.
+    limit : Float[Array, ""]
+        Largest residual of an equilibrium [N, N m].
     tension, largest : Float[Array, "cables"]
         Tension at each tether point, and the largest along each cable [N].
     residual, clipped : Float[Array, "6"]
@@ -197,6 +210,8 @@ class Described(NamedTuple):
 
     state: State
     command: Command
+    allowed: Command
+    limit: Float[Array, ""]
     tension: Float[Array, "cables"]
     largest: Float[Array, "cables"]
     residual: Float[Array, "6"]
@@ -206,7 +221,7 @@ class Described(NamedTuple):
     cables: Float[Array, "cables"]
 
 
-@eqx.filter_jit
+@kept
 def described(problem: Problem, values: Float[Array, "unknowns"]) -> Described:
     """Return what there is for values of the unknowns: state, tensions [N], residual [N, N m], heights [m] at t = 0.
 
@@ -221,15 +236,17 @@ def described(problem: Problem, values: Float[Array, "unknowns"]) -> Described:
     plant, ground = problem.plant, problem.plant.environment.ground
     lengths = plant.initial_lengths()
     cables = plant.cable_states(jnp.zeros(()), state, lengths)
-    none = jnp.zeros(0)
+    allowed, none = plant.ship.allowed(command), jnp.zeros(0)
     lowest = [c.lowest_point(s, lengths[i])[2] for i, (c, s) in enumerate(zip(plant.cables, cables, strict=True))]
     return Described(
         state,
         command,
+        allowed,
+        residual_limit(plant),
         jnp.stack([safe_norm(c.ship) for c in cables]) if cables else none,
         jnp.stack([end_tension(c) for c in cables]) if cables else none,
         residual(plant, state, command),
-        residual(plant, state, plant.ship.allowed(command)),
+        residual(plant, state, allowed),
         drift(plant, state, problem.turning),
         ground - plant.ship.lowest_point(state),
         ground - jnp.stack(lowest) if lowest else none,

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-import jax.numpy as jnp
+import jax
 import numpy as np
 from jaxtyping import Array, Float
 
@@ -12,7 +12,7 @@ from tethership.analysis.trim.outcome import TrimOutcome
 from tethership.analysis.trim.problem import Question, ask, posed
 from tethership.analysis.trim.solve import described, solve
 from tethership.errors import ConfigError, SolveError, shown
-from tethership.plant import Command, State, check_parts, residual_limit
+from tethership.plant import Command, State, check_parts
 from tethership.scenario import Scenario
 
 __all__ = ["TrimOutcome", "TrimPoint", "solved", "trim"]
@@ -129,6 +129,6 @@ def solved(scenario: Scenario, question: Question) -> tuple[np.ndarray, TrimPoin
     """
     problem = posed(scenario.config.as_arrays(), scenario.system, question)
     values = solve(problem)
-    found = described(problem, jnp.asarray(values))
-    said = judge(scenario, found, float(residual_limit(scenario.system)), question.height_sought)
+    found = described(problem, values)
+    said = judge(scenario, jax.device_get(found), question.height_sought)
     return values, TrimPoint(found.state, found.command, found.tension, found.clipped, *said, scenario)

@@ -1,7 +1,6 @@
 """Which quantities a trim looks for, by name. Depends on: plant.names, errors."""
 
 import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
@@ -33,8 +32,8 @@ class Unknowns(eqx.Module):
     """
 
     index: tuple[int, ...] = eqx.field(static=True)
-    scale: Float[Array, "unknowns"]
-    effort: Float[Array, "unknowns"]
+    scale: Float[Array | np.ndarray, "unknowns"]
+    effort: Float[Array | np.ndarray, "unknowns"]
 
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the least and largest value of each in units of its scale: φ within ±π/2, θ within ±80π/180 [rad].
@@ -84,7 +83,7 @@ def find_unknowns(
     index = sorted(set(index))
     scales = [*SCALES, *[1.0] * (len(thrusters) + len(fins))]
     efforts = [0.0] * 12 + [1.0] * (len(thrusters) + len(fins))
-    return Unknowns(tuple(index), jnp.asarray([scales[i] for i in index]), jnp.asarray([efforts[i] for i in index]))
+    return Unknowns(tuple(index), np.asarray([scales[i] for i in index]), np.asarray([efforts[i] for i in index]))
 
 
 def find_places(names: tuple[str, ...], thrusters: list[str], fins: list[str]) -> tuple[int, ...]:

@@ -11,12 +11,12 @@ import json
 import os
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, wait
-from importlib import resources
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from tethership._kept import source_digest
 from tethership.campaign import fresh_processes
 from tethership.results import is_whole, sealed, write_atomically
 
@@ -75,17 +75,6 @@ def part_file(folder: Path, name: str) -> Path:
 def load_part(folder: Path, name: str) -> dict[str, Any]:
     """Return a job's result."""
     return json.loads(part_file(folder, name).read_text(encoding="utf-8"))["result"]
-
-
-def source_digest() -> str:
-    """Return a digest of all files of the package: code, vehicles, scenarios, fits."""
-    root = resources.files("tethership")
-    digest = hashlib.sha256()
-    for path in sorted(Path(str(root)).rglob("*")):
-        if path.suffix in (".py", ".toml", ".json", ".css", ".js", ".html") and path.is_file():
-            digest.update(str(path.relative_to(str(root))).encode())
-            digest.update(path.read_bytes())
-    return digest.hexdigest()
 
 
 def run_jobs(

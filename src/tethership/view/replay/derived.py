@@ -6,7 +6,6 @@ Depends on: scenario (the models), scipy.
 import functools
 from collections.abc import Callable
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -15,6 +14,7 @@ from jaxtyping import Float
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from tethership._kept import kept
 from tethership.physics import AbstractWind, Thrusters
 from tethership.scenario import ScenarioConfig, build_thrusters, build_wind, ground_level
 
@@ -86,7 +86,7 @@ def _in_blocks(function: Callable[..., jax.Array], *columns: Array) -> Array:
     return np.concatenate([np.asarray(part) for part in parts])[:count]
 
 
-@eqx.filter_jit
+@kept
 def _thrusts(
     thrusters: Thrusters,
     centre: Float[jax.Array, "3"],
@@ -99,6 +99,6 @@ def _thrusts(
     return jax.vmap(thrusters.thrust)(density, at_p, rates, throttle)
 
 
-@eqx.filter_jit
+@kept
 def _mean_wind(wind: AbstractWind, centre: Float[jax.Array, "n 3"]) -> Float[jax.Array, "n 3"]:
     return jax.vmap(wind.velocity)(centre)
