@@ -61,17 +61,24 @@ def drawn_over(figure: dict[str, Any], pinned: dict[str, Any]) -> dict[str, Any]
             layout[name] = {**axis, "range": [min(low, first), max(high, last)]}
     layout["barmode"] = "overlay"
     above = [_narrow(trace) if trace["type"] == "bar" else trace for trace in figure["data"]]
-    return {**figure, "data": [*map(_greyed, pinned["data"]), *above], "layout": layout}
+    places = [_place(trace) for trace in figure["data"]]
+    below = [_greyed(trace) for trace in pinned["data"] if _place(trace) not in places]
+    return {**figure, "data": [*below, *above], "layout": layout}
+
+
+def _place(trace: dict[str, Any]) -> tuple[Any, ...]:
+    """Return where a trace is drawn: one that lies under another is not to be seen."""
+    return tuple(trace.get(part) for part in ("type", "x", "y", "xaxis", "yaxis"))
 
 
 def _greyed(trace: dict[str, Any]) -> dict[str, Any]:
     """Return a trace as it looks while it is pinned."""
-    found = {**trace, "name": PINNED, "showlegend": False, "opacity": 0.8, "hoverinfo": "skip"}
+    found = {**trace, "name": PINNED, "showlegend": False, "opacity": 0.75, "hoverinfo": "skip"}
     found |= {"fillcolor": "rgba(0,0,0,0)"} if "fill" in trace else {}
     for leave in ("hovertemplate", "customdata", "text"):
         found.pop(leave, None)
     if "line" in trace:
-        found["line"] = {**trace["line"], "color": GREY, "width": 2.5, "dash": "solid"}
+        found["line"] = {**trace["line"], "color": GREY, "width": 2, "dash": "solid"}
     marker = {key: value for key, value in trace.get("marker", {}).items() if key not in LEFT_OUT}
     if trace["type"] == "bar":
         found["marker"] = {"color": "rgba(0,0,0,0)", "line": {"color": GREY, "width": 2}}

@@ -11,8 +11,8 @@ from tethership.scenario import Scenario
 
 VIEWS = {"trim": "Trim", "locus": "Root locus", "flight": "Flight"}
 
-POLL = 250
-"""Time between two looks at work that goes on [ms]."""
+POLL = 3000
+"""Time after which the page looks again at work that goes on although no answer came [ms]."""
 
 GRAPH: Any = {"displaylogo": False, "responsive": True, "displayModeBar": "hover", "showTips": False}
 """How plotly shows a figure."""
@@ -53,6 +53,7 @@ def page(scenario: Scenario, name: str, names: Sequence[str], folder: str, versi
             dcc.Store(id="client", data=uuid.uuid4().hex),
             dcc.Store(id="shown", data={}),
             dcc.Store(id="theme"),
+            dcc.Store(id="pulse"),
             dcc.Interval(id="tick", interval=POLL, disabled=False),
             _header(name, names),
             html.Div(

@@ -67,7 +67,7 @@ class Desk:
         request : Request
             For what.
         patience : float
-            How long after it was first asked for its end is waited for [s].
+            How long its end is waited for [s].
         """
         with self._changed:
             former = self._wanted.get((client, request.view))
@@ -84,7 +84,7 @@ class Desk:
                 self._trim_kept()
                 self._changed.notify_all()
             self._standings.move_to_end(request)
-            self._changed.wait_for(lambda: not self._goes_on(request), standing.asked + patience - time.monotonic())
+            self._changed.wait_for(lambda: not self._goes_on(request), patience)
             return self._standings.get(request, standing)
 
     def cancel(self, client: str) -> None:

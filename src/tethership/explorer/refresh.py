@@ -18,8 +18,14 @@ from tethership.explorer.requests import Understanding, form_of
 from tethership.explorer.standing import Request, Standing
 from tethership.explorer.views import HEADS, RESTS, asked, compared, frame, pinned_line
 
-PATIENCE = 0.4
-"""How long after a change its result is waited for before the page is told that it is being computed [s]."""
+PATIENCE = 0.5
+"""How long the answer to a change waits for its result before it tells that it is being computed [s]."""
+
+SOON = 2.0
+"""How long after a change the page looks often whether its result is there [s]."""
+
+OFTEN, LATER = 60, 250
+"""Time between an answer and the next look at work that goes on [ms]."""
 
 TEXTS = {"name": ALL, "part": "text", "kind": ALL}
 """All texts of the panel."""
@@ -36,6 +42,7 @@ class Showing:
         Output("cancel", "disabled"),
         Output("again", "disabled"),
         Output("tick", "disabled"),
+        Output("pulse", "data"),
         Output("trouble", "children"),
         Output("trouble", "className"),
         Output("shown", "data"),
@@ -116,7 +123,7 @@ class Showing:
         if ctx.triggered_id == "cancel":
             self.desk.ask(client, request)
             self.desk.cancel(client)
-        return self.desk.ask(client, request, PATIENCE)
+        return self.desk.ask(client, request, 0.0 if ctx.triggered_id == "tick" else PATIENCE)
 
     def _trouble(self, view: str, words: str) -> tuple[Any, ...]:
         """Return the page for wrong input: what is shown stays, marked as old."""
@@ -128,6 +135,7 @@ class Showing:
             True,
             True,
             True,
+            no_update,
             f"Not computed: {words}",
             "trouble",
             no_update,
@@ -149,7 +157,8 @@ class Showing:
         if standing.status == "done" and not keys.items() <= shown.items():
             shown |= keys
             now, parts = shown, (*_result(view, standing, pinned), recipe(view, standing.request, self.known), "view")
-        head = (words, style, bar, moving, not standing.busy, again, not standing.busy, trouble, tone, now)
+        idle = not standing.busy
+        head = (words, style, bar, moving, idle, again, idle, _pulse(standing), trouble, tone, now)
         return (*head, *self._views(view, parts))
 
     def _views(self, view: str, parts: Sequence[Any]) -> list[Any]:
@@ -163,13 +172,19 @@ def _result(view: str, standing: Standing, pinned: Standing | None) -> tuple[Any
     figure = result.get("figure")
     head, rest = [asked(standing.request), HEADS[view](result)], [RESTS[view](result)]
     if result.get("replay"):
-        rest.append(frame(standing.request))
+        rest.insert(0, frame(standing.request))
     if pinned is not None:
         head.append(pinned_line(pinned.request))
-        rest.insert(0, compared(view, result, pinned.result))
+        rest.insert(-1, compared(view, result, pinned.result))
         if figure and pinned.result.get("figure"):
             figure = drawn_over(figure, pinned.result["figure"])
     return head, figure or EMPTY, {} if figure else {"display": "none"}, rest
+
+
+def _pulse(standing: Standing) -> Any:
+    """Return when the page is to ask again [ms], after what asked now; never where nothing goes on."""
+    now = time.monotonic()
+    return [OFTEN if now < standing.asked + SOON else LATER, now] if standing.busy else no_update
 
 
 def _look(standing: Standing) -> str:

@@ -43,6 +43,10 @@ window.dash_clientside = Object.assign({}, window.dash_clientside, {
       return own.map((text, index) => (String(texts[index] ?? "").trim() === text ? "field" : "field changed"));
     },
     fit: (figure, theme) => (figure ? fitted(figure, theme) : window.dash_clientside.no_update),
+    // Ask again how the work stands once it was answered, never while an answer is awaited.
+    pulse(next, count) {
+      if (next) setTimeout(() => window.dash_clientside.set_props("tick", { n_intervals: (count ?? 0) + 1 }), next[0]);
+    },
     theme(clicks) {
       if (clicks) window.theme.turn();
       return window.theme.now();

@@ -115,8 +115,9 @@ const lightButtons = (layout) => {
 
 const fitted = (figure, theme) => {
   const found = theme === "dark" ? darkened(figure) : structuredClone(figure);
-  const paper = getComputedStyle(document.documentElement).getPropertyValue("--page").trim();
-  Object.assign(found.layout, { paper_bgcolor: paper, plot_bgcolor: paper });
+  const style = getComputedStyle(document.documentElement);
+  const [paper, ink] = ["--page", "--ink"].map((name) => style.getPropertyValue(name).trim());
+  Object.assign(found.layout, { paper_bgcolor: paper, plot_bgcolor: paper, font: { ...found.layout.font, color: ink } });
   if (theme === "dark") lightButtons(found.layout);
   return window.innerWidth < NARROW && found.data.length ? stacked(found) : found;
 };
