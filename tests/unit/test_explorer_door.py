@@ -125,6 +125,7 @@ def test_a_browser_is_not_told_the_token_where_others_can_read_it(tmp_path, monk
 
     monkeypatch.setattr("tethership.explorer.server.Worker", Idle)
     monkeypatch.setattr("tethership.explorer.server.serve_until_signal", serve)
+    monkeypatch.delattr(Explorer, "serve")  # it would listen for ever
     explore.explore("docking", 0, "127.0.0.1", tmp_path)
     assert not Path(told[0].removeprefix("file://")).exists()
 

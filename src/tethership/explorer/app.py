@@ -150,7 +150,9 @@ def _browser_callbacks(app: Dash) -> None:
     app.clientside_callback(
         dash.ClientsideFunction("explorer", "theme"), Output("theme", "data"), Input("dark", "n_clicks")
     )
-    app.clientside_callback(dash.ClientsideFunction("explorer", "pulse"), Input("pulse", "data"), State("tick", "n_intervals"))
+    app.clientside_callback(
+        dash.ClientsideFunction("explorer", "pulse"), Input("pulse", "data"), State("tick", "n_intervals")
+    )
     app.clientside_callback(
         dash.ClientsideFunction("explorer", "shape"),
         Output({"section": "flight"}, "className"),

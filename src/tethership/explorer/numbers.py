@@ -54,9 +54,7 @@ def cable_numbers(result: dict[str, Any]) -> list[Number]:
         for name, tension in result["tension"].items()
         for row in (
             Number(f"tension, {name}", _number(tension), "N"),
-            Number(
-                f"share of its breaking force, {name}", f"{100 * tension / result['breaking'][name]:.2f}", "%"
-            ),
+            Number(f"share of its breaking force, {name}", f"{100 * tension / result['breaking'][name]:.2f}", "%"),
         )
     ]
 
