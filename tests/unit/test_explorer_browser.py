@@ -26,7 +26,7 @@ playwright = pytest.importorskip("playwright.sync_api", reason="NO PLAYWRIGHT: t
 
 FOLDER_FLAGS = ("--port", "0", "--no-open", "--json")
 
-FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader"]
 
 SERVES = 120.0
 """How long the command may take until it serves [s]."""

@@ -148,7 +148,7 @@ class Understanding:
 
 def first_over(names: Collection[str], wanted: str | None = None) -> str:
     """Return what a locus runs over at first: what is wanted, else the first of `FIRST_OVER` that there is."""
-    return next(name for name in (wanted, *FIRST_OVER, *names) if name in names)
+    return next(name for name in (wanted, *FIRST_OVER, *names) if name is not None and name in names)
 
 
 def _around(parameter: Parameter) -> tuple[float, float]:
