@@ -43,9 +43,9 @@ def explore(
     if host not in LOOPBACK:
         raise ConfigError(f"--host {host}: the page is served to this machine alone; leave --host out")
     name, place = _placed(scenario, folder)
-    from tethership.explorer.server import Explorer, serve_until_signal
+    from tethership.explorer import server
 
-    explorer = Explorer(name, place, port)
+    explorer = server.Explorer(name, place, port)
 
     def ready() -> None:
         said = {"address": explorer.address, "server": explorer.base, "cookie": explorer.ticket.cookie}
@@ -57,7 +57,7 @@ def explore(
             typer.echo(f"tethership: no browser was found; open {explorer.address} yourself", err=True)
 
     with tempfile.TemporaryDirectory(prefix="tethership-") as private:
-        serve_until_signal(explorer, ready)
+        server.serve_until_signal(explorer, ready)
 
 
 def _placed(scenario: str, folder: Path | None) -> tuple[str, Path]:
