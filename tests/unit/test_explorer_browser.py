@@ -378,7 +378,7 @@ def test_while_something_is_computed_the_former_result_stays_with_a_sign(page):
     page.open("Flight")
     page.settled()
     page.write("cables.nose.winch.rewind_rate", "0")
-    page.write("stop.time_limit", "1e6")
+    page.write("stop.time_limit", "2e6")
     page.page.wait_for_selector(".view.stale.busy:visible")
     sign = page.page.locator(".view.busy:visible").evaluate("e => getComputedStyle(e, '::before').content")
     assert "computing" in sign
@@ -423,10 +423,10 @@ def test_the_flight_is_replayed_in_space(page):
     while not frame.evaluate("Boolean(window.tethership) && tethership.state().frames.every((count) => count > 0)"):
         assert time.monotonic() < end
         page.page.wait_for_timeout(50)
-    (stage,) = frame.evaluate("tethership.state().stages")
+    (shown,) = frame.evaluate("tethership.state().flights")
     scenario = ts.load_scenario("docking", {"stop.time_limit": 3.0})
     start = ts.dock(scenario, ts.trim(scenario)).data["tension"].to_numpy()[0]
-    assert np.allclose(stage["tension"], start, rtol=1e-5)
+    assert np.allclose(shown["tension"], start, rtol=1e-5)
     assert page.page.locator("iframe.space").get_attribute("sandbox") == "allow-scripts"
     page.page.get_by_text("histories", exact=True).click()
     assert page.page.locator("iframe.space:visible").count() == 0

@@ -55,7 +55,7 @@ const legendsAbove = (figure) => {
 };
 
 // Lightness of ink and of paper in the dark; what is between keeps its order, turned round.
-const [INK_IN_DARK, PAPER_IN_DARK] = [0.95, 0.23];
+const [INK_IN_DARK, PAPER_IN_DARK] = [1, 0.28];
 
 const pen = document.createElement("canvas").getContext("2d");
 
