@@ -65,17 +65,6 @@ def kill(pids):
             os.kill(pid, signal.SIGKILL)
 
 
-@contextlib.contextmanager
-def limited(seconds, known):
-    """Kill what this process has started besides what was known, where a block that takes no limit exceeds one [s]."""
-    timer = threading.Timer(seconds, lambda: kill(set(descendants(os.getpid())) - known))
-    timer.start()
-    try:
-        yield
-    finally:
-        timer.cancel()
-
-
 def alive(pids):
     return [
         pid for pid in pids if Path(f"/proc/{pid}/stat").exists() and " Z " not in Path(f"/proc/{pid}/stat").read_text()
@@ -104,12 +93,12 @@ def served(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def browser():
+def browser(limited):
     if BROWSER is None:
         pytest.skip(
             "NO BROWSER: the explorer is NOT tested in one; install Debian's chromium (apt-get install chromium)"
         )
-    known = set(descendants(os.getpid()))
+    known = limited.known()
     api = playwright.sync_playwright().start()
     opened = api.chromium.launch(executable_path=BROWSER, args=FLAGS)
     yield opened

@@ -188,17 +188,20 @@ CHANGES = ({}, {"wind.speed": "9", "cables.nose.length": "22"})
 
 
 @pytest.mark.parametrize("view", ["trim", "locus", "flight"])
-def test_both_are_drawn_the_pinned_one_in_grey_below(results, view):
+def test_both_are_drawn_the_pinned_one_in_grey(results, view):
     pinned, now = (result["figure"] for result in results[view])
     before = copy.deepcopy((pinned, now))
     both = drawn_over(now, pinned)
     assert (pinned, now) == before
     below = [trace for trace in both["data"] if trace.get("name") == PINNED]
     above = [trace for trace in both["data"] if trace.get("name") != PINNED]
-    assert both["data"] == [*below, *above]
+    marks = [trace for trace in below if trace.get("mode") == "markers"]
+    assert both["data"] == [*[trace for trace in below if trace not in marks], *above, *marks]
+    assert all(trace["marker"]["symbol"].endswith("-open") for trace in marks)
     assert [trace["x"] for trace in above] == [trace["x"] for trace in now["data"]]
     drawn = [(trace["x"], trace["y"]) for trace in both["data"]]
-    assert all((trace["x"], trace["y"]) in drawn for trace in pinned["data"])
+    lacking = [trace for trace in pinned["data"] if (trace["x"], trace["y"]) not in drawn]
+    assert all(trace["y"] in [other["y"] for other in above] and len(trace["x"]) == 2 for trace in lacking)  # limits
     for trace in below:
         looks = [trace.get("line", {}).get("color"), trace.get("marker", {}).get("line", {}).get("color")]
         assert GREY in looks

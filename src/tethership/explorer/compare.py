@@ -1,4 +1,4 @@
-"""A result that was pinned beside the present one: drawn below it in grey, and the numbers that differ in a table.
+"""A result that was pinned beside the present one: drawn with it in grey, and the numbers that differ in a table.
 
 Depends on: explorer.numbers, explorer.standing. Figures are plotly's JSON here, no objects.
 """
@@ -46,7 +46,9 @@ class Pins:
 
 
 def drawn_over(figure: dict[str, Any], pinned: dict[str, Any]) -> dict[str, Any]:
-    """Return a figure over a pinned one of the same view: the pinned traces in grey below, axes wide enough for both.
+    """Return a figure over a pinned one of the same view, in grey, with axes wide enough for both.
+
+    Pinned lines and bars lie below, pinned marks above, open, so that each is seen.
 
     Parameters
     ----------
@@ -62,13 +64,15 @@ def drawn_over(figure: dict[str, Any], pinned: dict[str, Any]) -> dict[str, Any]
     layout["barmode"] = "overlay"
     above = [_narrow(trace) if trace["type"] == "bar" else trace for trace in figure["data"]]
     places = [_place(trace) for trace in figure["data"]]
-    below = [_greyed(trace) for trace in pinned["data"] if _place(trace) not in places]
-    return {**figure, "data": [*below, *above], "layout": layout}
+    greyed = [_greyed(trace) for trace in pinned["data"] if _place(trace) not in places]
+    below, marks = ([one for one in greyed if (one.get("mode") == "markers") is mark] for mark in (False, True))
+    return {**figure, "data": [*below, *above, *marks], "layout": layout}
 
 
 def _place(trace: dict[str, Any]) -> tuple[Any, ...]:
-    """Return where a trace is drawn: one that lies under another is not to be seen."""
-    return tuple(trace.get(part) for part in ("type", "x", "y", "xaxis", "yaxis"))
+    """Return where a trace is drawn: one that lies under another is not to be seen; of a limit only its height."""
+    limit = trace.get("hoverinfo") == "skip" and len(trace["x"]) == 2
+    return tuple(trace.get(part) for part in ("type", "y", "xaxis", "yaxis", *(() if limit else ("x",))))
 
 
 def _greyed(trace: dict[str, Any]) -> dict[str, Any]:
@@ -83,7 +87,8 @@ def _greyed(trace: dict[str, Any]) -> dict[str, Any]:
     if trace["type"] == "bar":
         found["marker"] = {"color": "rgba(0,0,0,0)", "line": {"color": GREY, "width": 2}}
     elif marker:
-        found["marker"] = marker | {"color": GREY, "line": {"color": GREY, "width": 1}}
+        symbol = f"{marker.get('symbol', 'circle')}-open"
+        found["marker"] = marker | {"symbol": symbol, "color": GREY, "line": {"color": GREY, "width": 1.5}}
     return found
 
 
