@@ -6,7 +6,9 @@ import gc
 import json
 import os
 import shutil
+import signal
 import subprocess
+import threading
 from pathlib import Path
 
 import equinox as eqx
@@ -121,6 +123,34 @@ def browsed(browser, tmp_path):
         return subprocess.run(command, capture_output=True, text=True, timeout=120, check=True).stdout
 
     return shown
+
+
+def _descendants(pid):
+    """Return the processes that a process started, and theirs."""
+    children = [int(c) for task in Path(f"/proc/{pid}/task").glob("*/children") for c in task.read_text().split()]
+    return children + [other for child in children for other in _descendants(child)]
+
+
+@pytest.fixture(scope="session")
+def limited():
+    """Kill what was started after `known` where a block that cannot be told a limit takes longer: a browser's end."""
+
+    def kill(known):
+        for pid in set(_descendants(os.getpid())) - known:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
+
+    @contextlib.contextmanager
+    def within(seconds, known):
+        timer = threading.Timer(seconds, kill, [known])
+        timer.start()
+        try:
+            yield
+        finally:
+            timer.cancel()
+
+    within.known = lambda: set(_descendants(os.getpid()))
+    return within
 
 
 def _is_whole(path):

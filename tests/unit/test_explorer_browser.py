@@ -3,12 +3,14 @@
 If one of these failed, a page would show old numbers as new ones, hang, call home, or leave processes behind.
 """
 
+import contextlib
 import json
 import os
 import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 import urllib.request
 from pathlib import Path
@@ -24,18 +26,43 @@ playwright = pytest.importorskip("playwright.sync_api", reason="NO PLAYWRIGHT: t
 
 FOLDER_FLAGS = ("--port", "0", "--no-open", "--json")
 
+FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader"]
 
-def started(folder, *flags):
-    """Start the command and return its process and what it says once it serves."""
-    command = [sys.executable, "-m", "tethership", "explore", *FOLDER_FLAGS, "--folder", str(folder), *flags]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    return process, json.loads(process.stdout.readline())
+SERVES = 120.0
+"""How long the command may take until it serves [s]."""
+
+pytestmark = pytest.mark.timeout(400)
+
+
+def started(folder, errors):
+    """Start the command and return its process and what it says once it serves; its errors go into a file.
+
+    Into a file, for a pipe stays open as long as any process of its family lives: to read it to its end may take for
+    ever after the command itself was killed.
+    """
+    command = [sys.executable, "-m", "tethership", "explore", *FOLDER_FLAGS, "--folder", str(folder)]
+    with errors.open("w") as sink:
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=sink, text=True)
+    lines = []
+    reader = threading.Thread(target=lambda: lines.append(process.stdout.readline()), daemon=True)
+    reader.start()
+    reader.join(SERVES)
+    if not lines or not lines[0]:
+        kill([process.pid, *descendants(process.pid)])
+        raise AssertionError(f"it did not serve within {SERVES:g} s: {errors.read_text()}")
+    return process, json.loads(lines[0])
 
 
 def descendants(pid):
     """Return the processes that a process started, and theirs."""
     children = [int(c) for task in Path(f"/proc/{pid}/task").glob("*/children") for c in task.read_text().split()]
     return children + [other for child in children for other in descendants(child)]
+
+
+def kill(pids):
+    for pid in pids:
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGKILL)
 
 
 def alive(pids):
@@ -55,22 +82,34 @@ def gone(pids, seconds=10.0):
 @pytest.fixture(scope="module")
 def served(tmp_path_factory):
     folder = tmp_path_factory.mktemp("explored")
-    process, said = started(folder)
+    process, said = started(folder, tmp_path_factory.mktemp("said") / "errors")
     yield said, folder
+    family = [process.pid, *descendants(process.pid)]
     process.terminate()
-    process.wait(15)
+    try:
+        process.wait(15)
+    finally:
+        kill(family)
 
 
 @pytest.fixture(scope="module")
-def browser():
+def browser(limited):
     if BROWSER is None:
         pytest.skip(
             "NO BROWSER: the explorer is NOT tested in one; install Debian's chromium (apt-get install chromium)"
         )
-    with playwright.sync_playwright() as api:
-        opened = api.chromium.launch(executable_path=BROWSER, args=["--no-sandbox"])
-        yield opened
+    known = limited.known()
+    api = playwright.sync_playwright().start()
+    opened = api.chromium.launch(executable_path=BROWSER, args=FLAGS)
+    yield opened
+    with limited(60.0, known):  # neither end takes a limit
         opened.close()
+        api.stop()
+
+
+def serious(line):
+    """Return what a line of the console tells of the page, and not of the machine's graphics."""
+    return [line.text] if line.type in ("error", "warning") and "GL Driver Message" not in line.text else []
 
 
 class Page:
@@ -79,7 +118,7 @@ class Page:
     def __init__(self, page, said):
         self.page, self.troubles = page, []
         page.set_default_timeout(90_000)
-        page.on("console", lambda line: line.type in ("error", "warning") and self.troubles.append(line.text))
+        page.on("console", lambda line: self.troubles.extend(serious(line)))
         page.on("pageerror", lambda error: self.troubles.append(str(error)))
         page.on(
             "request", lambda r: r.url.startswith((said["server"], "data:", "blob:")) or self.troubles.append(r.url)
@@ -312,6 +351,147 @@ def test_another_scenario_and_the_file_are_offered(page, served):
     assert not (served[1].parent / "outside.toml").exists()
 
 
+def test_what_was_seen_before_is_shown_again_without_computing(page):
+    """Told by the time that it took: this is the former result, not a new one."""
+    page.write("wind.speed", "7.5")
+    page.settled("wind.speed = 7.5 m/s")
+    took = page.page.locator("#state").inner_text()
+    page.write("wind.speed", "8.5")
+    page.settled("wind.speed = 8.5 m/s")
+    page.write("wind.speed", "7.5")
+    page.settled("wind.speed = 7.5 m/s")
+    assert page.page.locator("#state").inner_text() == took
+
+
+def test_while_something_is_computed_the_former_result_stays_with_a_sign(page):
+    page.open("Flight")
+    page.settled()
+    page.write("cables.nose.winch.rewind_rate", "0")
+    page.write("stop.time_limit", "2e6")
+    page.page.wait_for_selector(".view.stale.busy:visible")
+    sign = page.page.locator(".view.busy:visible").evaluate("e => getComputedStyle(e, '::before').content")
+    assert "computing" in sign
+    assert page.page.locator(".view.busy:visible .metrics").count() == 1
+    page.page.locator("#cancel").click()
+    page.page.wait_for_selector(".view.stale:not(.busy):visible")
+
+
+def test_a_pinned_result_is_drawn_below_and_compared_until_it_is_let_go(page):
+    page.settled("unchanged")
+    page.page.locator(".pin:visible").click()
+    page.page.wait_for_selector(".pin:visible:has-text('Unpin')")
+    page.settled("pinned, in grey: docking · unchanged")
+    page.write("wind.speed", "9")
+    page.settled("wind.speed = 9 m/s")
+    both = page.page.evaluate(
+        """() => document.querySelector(`[id*='"figure":"trim"'] .js-plotly-plot`).data
+          .filter((trace) => trace.type === "bar").map((trace) => [trace.name, trace.marker.line?.color])"""
+    )
+    assert both == [["pinned", "#808080"], ["throttle", None]]
+    rows = page.page.locator(".view:visible tr", has_text="tension, nose").all_inner_texts()
+    chosen = [ts.trim(ts.load_scenario("docking", {"wind.speed": speed})).tension[0] for speed in (6.0, 9.0)]
+    change = round(float(chosen[1]), 4) - round(float(chosen[0]), 4)
+    told = ["tension, nose", f"{chosen[0]:.4f}", f"{chosen[1]:.4f}", f"{change:+.4f}", "N"]
+    assert rows[0].split("\t") == told
+    page.page.locator(".pin:visible").click()
+    page.page.wait_for_selector(".pin:visible:has-text('Pin this result')")
+    page.page.wait_for_function("() => !document.querySelector('.pinned')")
+    assert page.page.get_by_text("Changed since it was pinned").count() == 0
+
+
+def test_the_flight_is_replayed_in_space(page):
+    """The replay's own page, in a frame that can reach nothing else; loaded when it is to be seen, not before."""
+    page.open("Flight")
+    page.write("stop.time_limit", "3")
+    page.settled("time limit after 3.00 s")
+    assert page.page.locator("iframe.space").get_attribute("src") is None
+    page.page.get_by_text("in space (3-D)").click()
+    page.page.wait_for_selector("iframe.space[src]")
+    frame = page.page.locator("iframe.space").element_handle().content_frame()
+    end = time.monotonic() + 90
+    while not frame.evaluate("Boolean(window.tethership) && tethership.state().frames.every((count) => count > 0)"):
+        assert time.monotonic() < end
+        page.page.wait_for_timeout(50)
+    (shown,) = frame.evaluate("tethership.state().flights")
+    scenario = ts.load_scenario("docking", {"stop.time_limit": 3.0})
+    start = ts.dock(scenario, ts.trim(scenario)).data["tension"].to_numpy()[0]
+    assert np.allclose(shown["tension"], start, rtol=1e-5)
+    assert page.page.locator("iframe.space").get_attribute("sandbox") == "allow-scripts"
+    page.page.get_by_text("histories", exact=True).click()
+    assert page.page.locator("iframe.space:visible").count() == 0
+
+
+COLOURS = """view => {
+  const graph = document.querySelector(`[id*='"figure":"${view}"'] .js-plotly-plot`);
+  const full = graph._fullLayout;
+  const lines = graph._fullData.flatMap((one) => [one.line?.color, one.marker?.color])
+    .filter((colour) => typeof colour === "string");
+  return { paper: full.paper_bgcolor, words: full.font.color, lines,
+    page: getComputedStyle(document.body).backgroundColor, text: getComputedStyle(document.body).color };
+}"""
+"""The colours of a figure, and of the page around it."""
+
+
+def luminance(colour):
+    """Return the relative luminance of a CSS colour (WCAG 2)."""
+    if colour.startswith("#"):
+        parts = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    else:
+        parts = [float(part) / 255 for part in colour[colour.index("(") + 1 : -1].split(",")[:3]]
+    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(one, other):
+    """Return the contrast of two colours [-], 1 … 21."""
+    high, low = sorted((luminance(one), luminance(other)), reverse=True)
+    return (high + 0.05) / (low + 0.05)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_page_and_figures_are_dark_where_the_system_is(browser, served, scheme):
+    """Words are read (7 : 1) and lines are seen (3 : 1; on white as ever) in both."""
+    context = browser.new_context(viewport={"width": 1400, "height": 900}, color_scheme=scheme)
+    opened = Page(context.new_page(), served[0])
+    for tab, view in (("Trim", "trim"), ("Root locus", "locus"), ("Flight", "flight")):
+        opened.open(tab)
+        opened.settled()
+        opened.page.wait_for_timeout(300)
+        found = opened.page.evaluate(COLOURS, view)
+        assert (luminance(found["page"]) < 0.05) == (scheme == "dark")
+        assert contrast(found["paper"], found["page"]) < 1.02
+        assert contrast(found["text"], found["page"]) > 7
+        assert contrast(found["words"], found["paper"]) > 7
+        if scheme == "dark":
+            assert min(contrast(colour, found["paper"]) for colour in found["lines"]) > 3
+    assert opened.troubles == []
+    context.close()
+
+
+def test_dark_may_be_chosen_and_is_remembered(browser, served):
+    context = browser.new_context(color_scheme="light")
+    opened = Page(context.new_page(), served[0])
+
+    def is_dark():
+        opened.page.wait_for_timeout(300)
+        found = opened.page.evaluate(COLOURS, "trim")
+        assert (luminance(found["page"]) < 0.05) == (luminance(found["paper"]) < 0.05)
+        return luminance(found["page"]) < 0.05
+
+    assert not is_dark()
+    opened.page.locator("#dark").click()
+    assert is_dark()
+    opened.page.reload()
+    opened.settled()
+    assert is_dark()
+    opened.page.locator("#dark").click()
+    assert not is_dark()
+    opened.page.emulate_media(color_scheme="dark")  # as the system again: followed from now on
+    assert is_dark()
+    assert opened.troubles == []
+    context.close()
+
+
 def test_only_this_machine_is_answered(served):
     """The socket is bound to 127.0.0.1, not to every address: the kernel's own list says so."""
     port = int(served[0]["server"].rsplit(":", 1)[1])
@@ -323,11 +503,11 @@ def test_only_this_machine_is_answered(served):
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_nothing_is_left_behind(tmp_path, number):
-    process, said = started(tmp_path)
+    process, said = started(tmp_path, tmp_path / "errors")
     children = descendants(process.pid)
     assert children
     assert said["pid"] == process.pid
     os.kill(process.pid, number)
     assert process.wait(15) == (-number if number == signal.SIGKILL else 0)
     assert gone(children)
-    assert "Traceback" not in process.stderr.read()
+    assert "Traceback" not in (tmp_path / "errors").read_text()

@@ -5,6 +5,7 @@ If one of these failed, another user could compute and write files as the owner,
 
 import contextlib
 import copy
+import gzip
 import http.client
 import itertools
 import json
@@ -22,6 +23,7 @@ import tethership.explorer
 from tethership.cli import explore
 from tethership.explorer import connections
 from tethership.explorer.server import Explorer
+from tethership.explorer.standing import Standing
 
 CALLBACK = "/_dash-update-component"
 
@@ -59,7 +61,7 @@ def asked(explorer, method, path, body=None, **headers):
             words.setdefault("Content-Type", "application/json")
         connection.request(method, path, body, words)
         answer = connection.getresponse()
-        return answer.status, answer.read().decode(), answer.headers
+        return answer.status, answer.read().decode(errors="replace"), answer.headers
 
 
 def entered(explorer, method, path, body=None, **headers):
@@ -127,6 +129,7 @@ def test_a_browser_is_not_told_the_token_where_others_can_read_it(tmp_path, monk
     assert tethership.explorer.serve_until_signal is not serve  # looked up by another test of this process or not
     monkeypatch.setattr("tethership.explorer.server.Worker", Idle)
     monkeypatch.setattr("tethership.explorer.server.serve_until_signal", serve)
+    monkeypatch.delattr(Explorer, "serve")  # it would listen for ever
     explore.explore("docking", 0, "127.0.0.1", tmp_path)
     assert not Path(told[0].removeprefix("file://")).exists()
 
@@ -338,6 +341,24 @@ def test_no_file_of_the_machine_is_served(explorer, capfd, caplog, path):
     assert status == 404
     assert text.count("\n") == 1
     assert quiet(caplog, capfd)
+
+
+def test_a_replay_is_served_to_the_owner_alone_and_into_a_sandbox(explorer, monkeypatch):
+    """Its scripts stand in the page, so it gets an origin of its own, from which nothing here can be asked."""
+    flight = Standing(None, "done", result={"replay": gzip.compress(b"<p>played</p>")})
+    found = {("flight", "0123"): flight, ("flight", "4567"): flight._replace(result={"replay": None})}
+    monkeypatch.setattr(explorer.desk, "done", lambda view, key: found.get((view, key)))
+    status, _, headers = entered(explorer, "GET", "/replay/0123", Sec_Fetch_Site="same-origin")
+    assert status == 200
+    policy = headers["Content-Security-Policy"].split("; ")
+    assert {"default-src 'none'", "sandbox allow-scripts"} <= set(policy)
+    assert (headers["X-Frame-Options"], headers["Content-Encoding"]) == ("SAMEORIGIN", "gzip")
+    for path in ("/replay/4567", "/replay/89", "/replay/", "/replay/../0123"):
+        status, text, headers = entered(explorer, "GET", path)
+        assert (status, text.count("\n")) == (404, 1)
+        assert "frame-ancestors 'none'" in headers["Content-Security-Policy"]
+    assert asked(explorer, "GET", "/replay/0123")[0] == 403
+    assert entered(explorer, "GET", "/replay/0123", Sec_Fetch_Site="cross-site")[0] == 403
 
 
 @pytest.mark.parametrize(

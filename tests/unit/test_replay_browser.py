@@ -39,16 +39,21 @@ def folder(tmp_path_factory, windy):
 
 
 @pytest.fixture(scope="module")
-def playing():
-    with sync_api.sync_playwright() as playwright:
-        yield playwright
+def playing(limited):
+    known = limited.known()
+    playwright = sync_api.sync_playwright().start()
+    yield playwright
+    with limited(60.0, known):
+        playwright.stop()
 
 
 @pytest.fixture(scope="module")
-def chromium(playing, browser):
+def chromium(playing, browser, limited):
+    known = limited.known()
     running = playing.chromium.launch(executable_path=browser, args=FLAGS)
     yield running
-    running.close()
+    with limited(60.0, known):
+        running.close()
 
 
 def wait(page, condition):

@@ -9,7 +9,6 @@ from typing import Annotated
 
 import typer
 
-from tethership._extras import needs
 from tethership.cli.common import JsonOption, ScenarioArgument
 from tethership.cli.result import Result, show
 from tethership.errors import ConfigError
@@ -44,8 +43,7 @@ def explore(
     if host not in LOOPBACK:
         raise ConfigError(f"--host {host}: the page is served to this machine alone; leave --host out")
     name, place = _placed(scenario, folder)
-    with needs("explore"):
-        from tethership.explorer import server
+    from tethership.explorer import server
 
     explorer = server.Explorer(name, place, port)
 

@@ -12,20 +12,20 @@ from tethership.explorer.fields import extra_field, known_parameters
 from tethership.explorer.page import VIEWS, page
 from tethership.explorer.panel import field, panel
 from tethership.explorer.queue import Desk
-from tethership.explorer.refresh import TEXTS, Showing, request_key
-from tethership.explorer.requests import Understanding
+from tethership.explorer.refresh import TEXTS, Showing
+from tethership.explorer.requests import Understanding, first_over
 from tethership.explorer.views import verdict
 from tethership.view.report import page_text
 
 FIELDS = {"name": ALL, "part": "field"}
 """All fields of the panel, in the same order."""
 
+THEME = "theme.js"
+"""Read in the head of the page, before it is painted."""
+
 TEXT = {"name": MATCH, "part": "text", "kind": "main"}
 
 SLIDER = {"name": MATCH, "part": "slider", "kind": "main"}
-
-FIRST_OVER = ("wind.speed", "trim.elongation", "vehicle.body.mass")
-"""What a locus runs over at first: the first of these that the scenario has."""
 
 
 def make_app(known: Understanding, desk: Desk, scenario: str) -> Dash:
@@ -48,10 +48,12 @@ def make_app(known: Understanding, desk: Desk, scenario: str) -> Dash:
         update_title="",
         suppress_callback_exceptions=True,
         add_log_handler=False,
+        assets_ignore=THEME,
         enable_mcp=False,
     )
     palette = page_text("report", "palette.css")
-    app.index_string = app.index_string.replace("{%css%}", f"<style>\n{palette}</style>\n{{%css%}}")
+    first = f'<script src="/assets/{THEME}"></script>\n<style>\n{palette}</style>\n'
+    app.index_string = app.index_string.replace("{%css%}", f"{first}{{%css%}}")
     folder = known.folder
     app.layout = lambda: page(known.base(scenario), scenario, folder.scenarios(), str(folder.root), __version__)
     _panel_callbacks(app, known)
@@ -81,8 +83,7 @@ def _panel_callbacks(app: Dash, known: Understanding) -> None:
         except TethershipError as error:
             return [verdict("bad", str(error))], [], [], None, [], None
         numbers = sorted(known_parameters(base.config))
-        chosen = next(n for n in (over, *FIRST_OVER, *numbers) if n in numbers)
-        return panel(base), [], numbers, None, numbers, chosen
+        return panel(base), [], numbers, None, numbers, first_over(numbers, over)
 
     @app.callback(
         Output("extra", "children", allow_duplicate=True),
@@ -143,8 +144,20 @@ def _browser_callbacks(app: Dash) -> None:
             dash.ClientsideFunction("explorer", "fit"),
             Output({"figure": view}, "figure"),
             Input({"plain": view}, "data"),
+            Input("theme", "data"),
             prevent_initial_call=True,
         )
+    app.clientside_callback(
+        dash.ClientsideFunction("explorer", "theme"), Output("theme", "data"), Input("dark", "n_clicks")
+    )
+    app.clientside_callback(
+        dash.ClientsideFunction("explorer", "pulse"), Input("pulse", "data"), State("tick", "n_intervals")
+    )
+    app.clientside_callback(
+        dash.ClientsideFunction("explorer", "shape"),
+        Output({"section": "flight"}, "className"),
+        Input("shape", "value"),
+    )
     app.clientside_callback(
         dash.ClientsideFunction("explorer", "show"),
         *[Output({"section": view}, "style") for view in VIEWS],
@@ -174,7 +187,7 @@ def _save_callback(app: Dash, known: Understanding, desk: Desk) -> None:
         if not clicks or not shown or not ctx.triggered_id:
             return no_update
         view = ctx.triggered_id["view"]
-        request = desk.find(lambda one: one.view == view and request_key(one) == shown.get(view))
+        request = desk.find(lambda one: one.view == view and one.key == shown.get(view))
         if request is None:
             return "This is no longer kept; change something or compute again."
         try:

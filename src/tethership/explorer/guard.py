@@ -29,12 +29,16 @@ HEADERS = {
 
 CALLBACK = "/_dash-update-component"
 
+REPLAY = "/replay/<string:key>"
+"""Rule under which replays are served."""
+
 SERVED = (
     "/",
     "/_dash-layout",
     "/_dash-dependencies",
     CALLBACK,
     "/_favicon.ico",
+    REPLAY,
     "/assets/<path:filename>",
     "/_dash-component-suites/<string:package_name>/<path:fingerprinted_path>",
 )
@@ -91,10 +95,10 @@ def guard(
     @server.after_request
     def _headers(response: Response) -> Response:
         for name, value in HEADERS.items():
-            response.headers[name] = value
+            response.headers.setdefault(name, value)
         if response.status_code != 200 or "component-suites" not in request.path:
             response.headers["Cache-Control"] = "no-store"
-        response.headers["Content-Security-Policy"] = policy
+        response.headers.setdefault("Content-Security-Policy", policy)
         return response
 
     @server.errorhandler(HTTPException)

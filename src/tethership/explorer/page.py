@@ -11,15 +11,22 @@ from tethership.scenario import Scenario
 
 VIEWS = {"trim": "Trim", "locus": "Root locus", "flight": "Flight"}
 
-POLL = 250
-"""Time between two looks at work that goes on [ms]."""
+POLL = 3000
+"""Time after which the page looks again at work that goes on although no answer came [ms]."""
 
 GRAPH: Any = {"displaylogo": False, "responsive": True, "displayModeBar": "hover", "showTips": False}
 """How plotly shows a figure."""
 
-FIRST = (
-    "Nothing is computed yet. The first time the programs are compiled, which takes seconds; then it is tenths of one."
-)
+FIRST = "The first result of each view takes seconds, the first time on a machine longer; then it is tenths of one."
+"""What stands where no result is yet."""
+
+PIN, UNPIN = "Pin this result", "Unpin"
+"""Words of the button that keeps a result to compare later ones with."""
+
+PIN_WORDS = "Later results are drawn over this one, and a table tells what has changed"
+
+SHAPES = {"histories": "histories", "space": "in space (3-D)"}
+"""How a flight is shown."""
 
 EMPTY = {"data": [], "layout": {"xaxis": {"visible": False}, "yaxis": {"visible": False}, "height": 120}}
 """A figure before there is one."""
@@ -45,6 +52,8 @@ def page(scenario: Scenario, name: str, names: Sequence[str], folder: str, versi
         [
             dcc.Store(id="client", data=uuid.uuid4().hex),
             dcc.Store(id="shown", data={}),
+            dcc.Store(id="theme"),
+            dcc.Store(id="pulse"),
             dcc.Interval(id="tick", interval=POLL, disabled=False),
             _header(name, names),
             html.Div(
@@ -116,16 +125,16 @@ def _header(name: str, names: Sequence[str]) -> html.Header:
             html.A("Numbers ↓", href="#numbers", className="jump"),
             html.Button("Cancel", id="cancel", disabled=True),
             html.Button("Compute again", id="again", disabled=True),
+            html.Button("◐", id="dark", title="dark or light", **{"aria-label": "dark or light"}),  # pyright: ignore[reportArgumentType]
         ]
     )
 
 
 def _view(view: str) -> html.Section:
     """Return the place of a view: options, what the result says, its figure, the rest, and how to repeat it."""
-    options = [_span()] if view == "locus" else []
     return html.Section(
         [
-            *options,
+            _options(view),
             html.Div(
                 [
                     html.Div(html.P(FIRST, className="asked"), id={"head": view}),
@@ -143,7 +152,22 @@ def _view(view: str) -> html.Section:
     )
 
 
-def _span() -> html.Div:
+def _options(view: str) -> html.Div:
+    """Return what may be chosen of a view: what a locus runs over, how a flight is shown, what is pinned."""
+    chosen = {"locus": _span, "flight": _shapes}.get(view, list)()
+    pin = html.Button(PIN, id={"view": view, "part": "pin"}, disabled=True, title=PIN_WORDS, className="pin")
+    return html.Div([*chosen, pin], className="options")
+
+
+def _shapes() -> list[Any]:
+    """Return how a flight may be shown."""
+    options = [{"label": words, "value": shape} for shape, words in SHAPES.items()]
+    return [
+        grouped("how the flight is shown", dcc.RadioItems(id="shape", value="histories", options=options, inline=True))
+    ]
+
+
+def _span() -> list[Any]:
     """Return what the root locus runs over."""
     entries: list[Any] = [html.Label("over", htmlFor="over")]
     entries.append(dcc.Dropdown(id="over", options=[], value="wind.speed", clearable=False, className="over"))
@@ -151,4 +175,4 @@ def _span() -> html.Div:
         box = dcc.Input(id=name, value="", type="text", debounce=True, className="number", maxLength=LONGEST)
         entries += [html.Label(words, htmlFor=name), box]
     entries.append(html.Span("", id="over-unit", className="unit"))
-    return html.Div(entries, className="options")
+    return entries

@@ -1,21 +1,26 @@
-"""Requests and what became of them: newest first, one at a time, every result under its own request.
+"""Requests and what became of them: one at a time, every result kept under its own request.
 
-Depends on: explorer.worker.
+Depends on: explorer.standing, explorer.worker.
 """
 
 import threading
 import time
 from collections import OrderedDict
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 from tethership.errors import TethershipError
-from tethership.explorer.choice import Choice
-from tethership.explorer.recipe import Span
-from tethership.explorer.worker import Stopped, Worker
+from tethership.explorer.standing import Request, Standing
+from tethership.explorer.worker import GRACE, Stopped, Worker
 
-KEPT = 40
-"""Results that are kept, newest."""
+KEPT = 60
+"""Results that are kept: those that were asked for last."""
+
+AHEAD = ""
+"""The client that asks for what a page will ask for first; every page goes before it."""
+
+REPLACED = 30.0
+"""How long a job that nobody waits for may take to notice it [s]: what it compiles serves the next one too."""
 
 GONE = 3.0
 """How long nobody may ask after running work while other work waits: its page was closed [s]."""
@@ -25,72 +30,6 @@ FORGOTTEN = 150.0
 
 LAST = {"trim": 0, "locus": 1, "flight": 2}
 """Order in which waiting views are computed: the quick ones first."""
-
-
-class Request(NamedTuple):
-    """What a view is to show.
-
-    Attributes
-    ----------
-    view : str
-        trim, locus or flight.
-    path : str
-        Scenario, as `load_scenario` takes it.
-    choice : Choice
-        What was changed.
-    span : Span, optional
-        Of a locus.
-    """
-
-    view: str
-    path: str
-    choice: Choice
-    span: Span | None = None
-
-    def job(self) -> tuple[Any, ...]:
-        """Return the arguments of `tasks.compute`."""
-        options = {}
-        if self.span is not None:
-            options = self.span._asdict() | {"unit": self.span.si_unit}
-        return self.view, self.path, self.choice.values, options
-
-
-class Standing(NamedTuple):
-    """How a request stands.
-
-    Attributes
-    ----------
-    request : Request
-    status : str
-        waiting, running, done, failed, cancelled.
-    text : str
-        What is being done, or why it failed.
-    share : float, optional
-        Part that is done, 0 … 1 [-], where known.
-    begun : float
-        When it was asked for, or begun [s, monotonic].
-    seconds : float
-        How long it took [s]; only of what has ended.
-    result : Any
-        Of what is done.
-    asking : int
-        Which asking it answers: a run that was dropped may end after the same request was asked for anew, and its
-        end says nothing about the new one.
-    """
-
-    request: Request
-    status: str
-    text: str = ""
-    share: float | None = None
-    begun: float = 0.0
-    seconds: float = 0.0
-    result: Any = None
-    asking: int = 0
-
-    @property
-    def busy(self) -> bool:
-        """Whether it has not ended."""
-        return self.status in ("waiting", "running")
 
 
 class Desk:
@@ -112,14 +51,24 @@ class Desk:
         self._seen: dict[Request, float] = {}
         self._running: Request | None = None
         self._askings = 0
-        self._stopping = False
+        self._stopping: float | None = None
         self._closed = False
         self._changed = threading.Condition()
         self._thread = threading.Thread(target=self._work, name="tethership-desk", daemon=True)
         self._thread.start()
 
-    def ask(self, client: str, request: Request) -> Standing:
-        """Return how a request stands; a new one waits, and replaces the client's earlier one of the same view."""
+    def ask(self, client: str, request: Request, patience: float = 0.0) -> Standing:
+        """Return how a request stands; a new one waits, and replaces the client's earlier one of the same view.
+
+        Parameters
+        ----------
+        client : str
+            Who asks: a page.
+        request : Request
+            For what.
+        patience : float
+            How long its end is waited for [s].
+        """
         with self._changed:
             former = self._wanted.get((client, request.view))
             self._wanted[client, request.view] = request
@@ -129,11 +78,14 @@ class Desk:
             standing = self._standings.get(request)
             if standing is None:
                 self._askings += 1
-                standing = Standing(request, "waiting", "waiting", begun=time.monotonic(), asking=self._askings)
+                now = time.monotonic()
+                standing = Standing(request, "waiting", "waiting", begun=now, asking=self._askings, asked=now)
                 self._standings[request] = standing
                 self._trim_kept()
                 self._changed.notify_all()
-            return standing
+            self._standings.move_to_end(request)
+            self._changed.wait_for(lambda: not self._goes_on(request), patience)
+            return self._standings.get(request, standing)
 
     def cancel(self, client: str) -> None:
         """Cancel all that a client waits for."""
@@ -144,7 +96,9 @@ class Desk:
                     self._standings[request] = standing._replace(
                         status="cancelled", text="cancelled", seconds=time.monotonic() - standing.begun
                     )
-                    self._stopping |= request == self._running
+                    self._stop(request, GRACE)
+            if self._stopping is not None:  # what was replaced has no more time either
+                self._stopping = GRACE
             self._changed.notify_all()
 
     def forget(self, request: Request) -> None:
@@ -158,10 +112,16 @@ class Desk:
         with self._changed:
             return next(filter(wanted, self._standings), None)
 
+    def done(self, view: str, key: str) -> Standing | None:
+        """Return what has been computed of a view under a request's key, if it is kept."""
+        with self._changed:
+            found = (one for request, one in self._standings.items() if (request.view, request.key) == (view, key))
+            return next((one for one in found if one.status == "done"), None)
+
     def close(self) -> None:
         """Stop everything and end the computing process."""
         with self._changed:
-            self._closed = self._stopping = True
+            self._closed, self._stopping = True, GRACE
             self._changed.notify_all()
         self.worker.close()
         self._thread.join(5.0)
@@ -172,10 +132,19 @@ class Desk:
         if standing is None or not standing.busy or request in self._wanted.values():
             return
         del self._standings[request]
-        self._stopping |= request == self._running
+        self._stop(request, REPLACED)
+
+    def _stop(self, request: Request, grace: float) -> None:
+        """Have a request that runs stop within some time [s]."""
+        if request == self._running:
+            self._stopping = grace if self._stopping is None else min(grace, self._stopping)
+
+    def _goes_on(self, request: Request) -> bool:
+        """Return whether a request has not ended."""
+        return not self._closed and request in self._standings and self._standings[request].busy
 
     def _trim_kept(self) -> None:
-        """Keep only the newest results."""
+        """Keep only the results that were asked for last."""
         ended = [request for request, standing in self._standings.items() if not standing.busy]
         for request in ended[: max(0, len(ended) - KEPT)]:
             del self._standings[request]
@@ -187,9 +156,10 @@ class Desk:
             while not self._closed:
                 waiting = [standing for standing in self._standings.values() if standing.status == "waiting"]
                 if waiting:
-                    run = min(waiting, key=lambda standing: LAST[standing.request.view])
+                    pages = {request for (client, _), request in self._wanted.items() if client != AHEAD}
+                    run = min(waiting, key=lambda one: (one.request not in pages, LAST[one.request.view], one.asking))
                     self._running = run.request
-                    self._stopping = False
+                    self._stopping = None
                     self._note(run, status="running", text="starting", begun=time.monotonic())
                     return run
                 self._changed.wait()
@@ -201,6 +171,7 @@ class Desk:
             standing = self._standings.get(run.request)
             if standing is not None and standing.busy and standing.asking == run.asking:
                 self._standings[run.request] = standing._replace(**entries)
+                self._changed.notify_all()
 
     def _work(self) -> None:
         """Compute requests until the desk closes."""
@@ -225,14 +196,14 @@ class Desk:
             return {"status": "failed", "text": str(error)}
         return {"status": "done", "text": "", "result": result}
 
-    def _told_to_stop(self) -> bool:
-        """Return whether the running request is to end: told to, or its page has gone."""
+    def _told_to_stop(self) -> float | None:
+        """Return how soon the running request is to end [s], if it is: told to, or its page has gone."""
         with self._changed:
             running = self._running
-            if running is not None and not self._stopping:
+            if running is not None and self._stopping is None:
                 waited_for = any(standing.status == "waiting" for standing in self._standings.values())
                 silence = time.monotonic() - self._seen.get(running, 0.0)
                 if silence > (GONE if waited_for else FORGOTTEN):
                     self._standings.pop(running, None)
-                    self._stopping = True
+                    self._stopping = REPLACED
             return self._stopping

@@ -6,8 +6,8 @@ from dash import dcc, html
 
 from tethership.errors import ConfigError
 from tethership.explorer.panel import LONGEST, dom_id
-from tethership.explorer.queue import Request
 from tethership.explorer.requests import Understanding
+from tethership.explorer.standing import Request
 
 
 def recipe(view: str, request: Request, known: Understanding) -> html.Details:

@@ -5,17 +5,19 @@ the scenario each time.
 """
 
 import functools
+import json
 import math
 import shlex
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any
 
 from tethership.errors import ConfigError
-from tethership.explorer.choice import Form, choose
+from tethership.explorer.choice import Choice, Form, choose
 from tethership.explorer.fields import in_si, known_parameters, shown, shown_unit, typed
 from tethership.explorer.folder import Folder
-from tethership.explorer.queue import Request
 from tethership.explorer.recipe import Span, command, file_text
+from tethership.explorer.standing import Request
 from tethership.scenario import Parameter, Scenario, find_parameter, packaged_text, read_text
 
 MOST_POINTS = 400
@@ -26,6 +28,9 @@ VERBS = {"trim": ("trim",), "locus": ("sweep", "modes"), "flight": ("dock",)}
 
 USUAL = {"wind.speed": (6.0, 12.0, 13), "trim.elongation": (0.6, 1.0, 21)}
 """Ends in SI and points of a locus over some parameters; of others half to one and a half of their own value."""
+
+FIRST_OVER = ("wind.speed", "trim.elongation", "vehicle.body.mass")
+"""What a locus runs over at first: the first of these that the scenario has."""
 
 
 class Understanding:
@@ -69,6 +74,22 @@ class Understanding:
         choice = choose(base, form, self.folder.stamp(form.scenario))
         over = self._span(base, *span) if view == "locus" else None
         return Request(view, self.folder.located(form.scenario), choice, over)
+
+    def at_start(self, scenario: str) -> Iterator[Request]:
+        """Yield what a page of a scenario asks for first, without changes; the trim before the scenario is read here.
+
+        Raises
+        ------
+        ConfigError
+            As `base`.
+        """
+        path = self.folder.admitted(scenario)
+        unchanged = Choice(scenario, self.folder.stamp(scenario), json.dumps({}), ())
+        yield Request("trim", path, unchanged)
+        base = self.base(scenario)
+        over = first_over(sorted(known_parameters(base.config)))
+        yield Request("locus", path, unchanged, self._span(base, over, *self.usual_span(over, scenario)[:3]))
+        yield Request("flight", path, unchanged)
 
     def _span(self, base: Scenario, name: str, low: str, high: str, points: str) -> Span:
         """Return what a locus runs over."""
@@ -123,6 +144,11 @@ class Understanding:
             return request.choice.scenario
         path = Path(request.path)
         return str(path.relative_to(Path.cwd())) if path.is_relative_to(Path.cwd()) else str(path)
+
+
+def first_over(names: Collection[str], wanted: str | None = None) -> str:
+    """Return what a locus runs over at first: what is wanted, else the first of `FIRST_OVER` that there is."""
+    return next(name for name in (wanted, *FIRST_OVER, *names) if name is not None and name in names)
 
 
 def _around(parameter: Parameter) -> tuple[float, float]:

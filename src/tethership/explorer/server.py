@@ -1,5 +1,10 @@
-"""The server: one socket on loopback, ended cleanly with its computing process. Depends on: werkzeug, explorer."""
+"""The server: one socket on loopback, ended cleanly with its computing process. Depends on: explorer.
 
+The computing process is started first and told at once what a page will ask for: while this process makes the page,
+the other one computes.
+"""
+
+import contextlib
 import errno
 import logging
 import signal
@@ -8,16 +13,15 @@ import threading
 from collections.abc import Callable
 from pathlib import Path
 from types import FrameType
+from typing import TYPE_CHECKING
 
+from tethership._extras import needs
 from tethership.errors import ConfigError
-from tethership.explorer.app import make_app
-from tethership.explorer.connections import Server
-from tethership.explorer.folder import Folder
-from tethership.explorer.guard import guard
-from tethership.explorer.queue import Desk
-from tethership.explorer.requests import Understanding
 from tethership.explorer.ticket import PARAMETER, Ticket
 from tethership.explorer.worker import Worker
+
+if TYPE_CHECKING:
+    from tethership.explorer.requests import Understanding
 
 LOOPBACK = "127.0.0.1"
 
@@ -37,18 +41,38 @@ class Explorer:
     Raises
     ------
     ConfigError
-        No such scenario or folder, or the port is in use.
+        No such scenario or folder, the port is in use, or something that the page needs is not installed.
     """
 
     def __init__(self, scenario: str = "docking", folder: Path = Path(), port: int = 0) -> None:
-        known = Understanding(Folder(folder))
-        known.base(scenario)
+        worker = Worker()
+        with contextlib.ExitStack() as undo:
+            undo.callback(worker.close)
+            from tethership.explorer.folder import Folder
+            from tethership.explorer.queue import AHEAD, Desk
+            from tethership.explorer.requests import Understanding
+
+            known = Understanding(Folder(folder))
+            self.folder = known.folder.root
+            self.desk = Desk(worker)
+            undo.callback(self.desk.close)
+            for request in known.at_start(scenario):
+                self.desk.ask(AHEAD, request)
+            self._open(known, scenario, port)
+            undo.pop_all()
+
+    def _open(self, known: "Understanding", scenario: str, port: int) -> None:
+        """Make the page and listen; what that needs is imported while the computing process is at work already."""
+        with needs("explore"):
+            from tethership.explorer.app import make_app
+            from tethership.explorer.connections import Server
+            from tethership.explorer.guard import guard
+            from tethership.explorer.replays import serve_replays
         listening = _listen(port)
         self.port: int = listening.getsockname()[1]
-        self.folder = known.folder.root
-        self.desk = Desk(Worker())
         app = make_app(known, self.desk, scenario)
         self.ticket, self.callbacks = Ticket(self.port), app.callback_map
+        serve_replays(app.server, self.port, self.desk)
         guard(app.server, self.port, list(app.csp_hashes()), self.ticket, self.callbacks)
         logging.getLogger("werkzeug").setLevel(logging.ERROR)
         self._server = Server(LOOPBACK, self.port, app.server, fd=listening.fileno())

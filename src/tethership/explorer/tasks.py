@@ -3,6 +3,7 @@
 Takes and returns plain data: numbers in SI, angles in degrees, figures as plotly's JSON.
 """
 
+import gzip
 import math
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -41,7 +42,7 @@ def compute(view: str, path: str, changes: Mapping[str, Any], options: Mapping[s
     -------
     dict
         Numbers in SI, tensions [N], lengths [m], times [s], eigenvalues [1/s], but angles [deg] and rates of turn
-        [deg/s]; figures as plotly's JSON.
+        [deg/s]; figures as plotly's JSON, a replay as a page [gzip].
 
     Raises
     ------
@@ -145,7 +146,7 @@ def _mode(mode: Any) -> dict[str, Any]:
 
 
 def _flight(scenario: Scenario, options: Mapping[str, Any], report: Report) -> dict[str, Any]:
-    """Return a flight's metrics and histories."""
+    """Return a flight's metrics and histories, and the page that replays it in space, packed."""
     from tethership.analysis import trim
     from tethership.simulation import dock, verdict
 
@@ -165,6 +166,7 @@ def _flight(scenario: Scenario, options: Mapping[str, Any], report: Report) -> d
     report("drawing", 1.0)
     from tethership.explorer.plain import plain_figure
     from tethership.view.flight import interactive_histories
+    from tethership.view.replay import replay_text
 
     start = [f"The start is no equilibrium. {point.message}"] if point.saturated else []
     return {
@@ -185,4 +187,5 @@ def _flight(scenario: Scenario, options: Mapping[str, Any], report: Report) -> d
         "steps": flight.attributes["steps"],
         "cables": len(scenario.config.cables),
         "figure": plain_figure(interactive_histories(flight, "").update_layout(margin_t=45)),
+        "replay": gzip.compress(replay_text(flight).encode(), compresslevel=1),
     }

@@ -122,6 +122,7 @@ def _throttles(figure: go.Figure, scenario: Scenario, point: TrimPoint) -> None:
         marker=looks,
         text=["more than there is" if lacks else "" for lacks in lacking],
         textposition="auto",
+        name="throttle",
         hovertemplate="%{y}: %{x:.4f} of nominal<extra></extra>",
     )
     figure.add_trace(bars, row=1, col=3)

@@ -1,26 +1,16 @@
-"""Results as tables and words: takes what `tasks` returned, gives Dash components. Depends on: dash."""
+"""Results as tables and words: takes what `tasks` returned, gives Dash components. Depends on: dash, explorer."""
 
 from collections.abc import Iterable, Sequence
 from typing import Any
 
 from dash import html
 
-STATE = (
-    ("north", "north of the origin", "m"),
-    ("east", "east of the origin", "m"),
-    ("down", "above the origin", "m"),
-    ("phi", "roll φ", "°"),
-    ("theta", "pitch θ", "°"),
-    ("psi", "heading ψ", "°"),
-    ("u", "forward u", "m/s"),
-    ("v", "to starboard v", "m/s"),
-    ("w", "downward w", "m/s"),
-)
-"""States at trim, with words and units.
+from tethership.explorer.compare import differences
+from tethership.explorer.numbers import cable_numbers, metric_numbers, rest_numbers
+from tethership.explorer.standing import Request
 
-x_P counts from the origin of the ground axes: the first anchor, unless the scenario puts that elsewhere. What is shown
-of `down` is −D.
-"""
+REPLAYS = "/replay"
+"""Where replays are served, each under its request's key."""
 
 RESIDUAL = (("X", "N"), ("Y", "N"), ("Z", "N"), ("L", "N m"), ("M", "N m"), ("N", "N m"))
 """Force and moment left over, body axes."""
@@ -60,16 +50,6 @@ def trim_rest(result: dict[str, Any]) -> Any:
     They are the place of P [m], angles [°], speeds [m/s], throttles [-], thrust and tensions [N] and what is left
     [N, N m].
     """
-    state = result["state"]
-    values = [(words, _number(-state[n] if n == "down" else state[n]), unit) for n, words, unit in STATE]
-    cables = [
-        row
-        for name, tension in result["tension"].items()
-        for row in (
-            (f"tension, {name}", _number(tension), "N"),
-            (f"share of its breaking force, {name}", f"{100 * tension / result['breaking'][name]:.2f}", "%"),
-        )
-    ]
     thrusters = [
         (name.replace("_", " "), f"{value:+.4f}", f"{value * result['nominal'][name]:+.1f} N")
         for name, value in result["throttle"].items()
@@ -77,9 +57,9 @@ def trim_rest(result: dict[str, Any]) -> Any:
     left = [(name, f"{v:.2e}", unit) for (name, unit), v in zip(RESIDUAL, result["residual"], strict=True)]
     return html.Div(
         [
-            _table("Where the ship rests", values),
+            _table("Where the ship rests", rest_numbers(result)),
             _table("Thrusters: throttle, thrust", thrusters),
-            _table("Cables", cables),
+            _table("Cables", cable_numbers(result)),
             _table("Force and moment left over", left),
         ],
         className="tables",
@@ -142,25 +122,9 @@ def flight_head(result: dict[str, Any]) -> Any:
     sound = "fair" if result["reserved"] else "good"
     kind = {"docked": sound, "time_limit": "fair", "ground_contact": "fair"}.get(result["outcome"], "bad")
     line = verdict(kind, f"{result['verdict']}. {result['message']}")
-    found = result["metrics"]
-    rows = [
-        ("largest tension", f"{found['tension_max']:.1f}", "N"),
-        ("mean tension", f"{found['tension_mean']:.1f}", "N"),
-        *[
-            (f"time above {limit:g} N", f"{seconds:.2f}", "s")
-            for limit, seconds in zip(result["limits"], found["seconds_above"], strict=True)
-        ],
-        ("slowest rewind rate", f"{found['rewind_rate_min']:.3f}", "m/s"),
-        ("pitch, RMS", f"{found['theta_rms']:.2f}", "°"),
-        ("duty cycle ADC", f"{found['ADC']:.3f}", "1/s"),
-        ("control energy E", f"{found['E']:.3f}", ""),
-        ("time saturated", f"{found['saturated_seconds']:.2f}", "s"),
-        ("least hull clearance", f"{found['clearance_min']:.2f}", "m"),
-    ]
     cells = [
         html.Div([html.Dt(words), html.Dd([value, html.Span(f" {unit}", className="unit")])])
-        for words, value, unit in rows
-        if value != "nan"
+        for words, value, unit in metric_numbers(result)
     ]
     laws = " + ".join((["SAS"] if result["sas"] else []) + result["layers"]) or "no law: constant rewind"
     return html.Div([line, html.P(f"Laws: {laws}.", className="laws"), html.Dl(cells, className="metrics")])
@@ -176,8 +140,29 @@ HEADS = {"trim": trim_head, "locus": locus_head, "flight": flight_head}
 RESTS = {"trim": trim_rest, "locus": locus_rest, "flight": flight_rest}
 
 
-def _number(value: float) -> str:
-    return f"{value + 0.0:.4f}" if abs(value) < 1000 else f"{value:.1f}"
+def asked(request: Request) -> html.P:
+    """Return what a result is of."""
+    scenario, _, changes = request.words.partition(" · ")
+    return html.P([html.B(scenario), f" · {changes}"], className="asked")
+
+
+def pinned_line(pinned: Request) -> html.P:
+    """Return what was pinned, in words."""
+    return html.P([html.Span(className="key"), f"pinned, in grey: {pinned.words}"], className="pinned")
+
+
+def compared(view: str, now: dict[str, Any], pinned: dict[str, Any]) -> Any:
+    """Return the numbers that differ from a pinned result's, each in the unit in which it is told."""
+    rows = list(differences(view, now, pinned))
+    if not rows:
+        return html.P("No number differs from the pinned result's.", className="note")
+    return _grid("Changed since it was pinned", ("number", "pinned", "now", "change", "unit"), rows, {0, 4})
+
+
+def frame(request: Request) -> html.Iframe:
+    """Return the place of a flight's replay in space, which the page's script loads once it is to be seen."""
+    place = {"data-src": f"{REPLAYS}/{request.key}", "title": "the flight in space"}
+    return html.Iframe(key=request.key, className="space", sandbox="allow-scripts", **place)  # pyright: ignore[reportArgumentType]
 
 
 def _root(pair: Sequence[float]) -> str:

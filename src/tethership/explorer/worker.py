@@ -7,6 +7,7 @@ import multiprocessing
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable
 from functools import partial
 from multiprocessing.connection import Connection
@@ -15,7 +16,7 @@ from typing import Any
 from tethership.errors import ConfigError, SolveError, TethershipError
 
 GRACE = 1.0
-"""How long a job may take to notice that it is to stop before its process is ended [s]."""
+"""How long a cancelled job may take to notice that it is to stop before its process is ended [s]."""
 
 LISTEN = 0.05
 """Time between two looks at whether to stop [s]."""
@@ -30,7 +31,7 @@ class Stopped(TethershipError):
 class Worker:
     """One computing process, started again after it had to be ended.
 
-    A job that is told to stop has `GRACE` [s] to notice, then its process is ended.
+    A job that is told to stop has some time to notice, then its process is ended.
     """
 
     def __init__(self) -> None:
@@ -56,7 +57,7 @@ class Worker:
         self,
         job: tuple[Any, ...],
         progress: Callable[[str, float | None], None],
-        should_stop: Callable[[], bool],
+        should_stop: Callable[[], float | None],
     ) -> Any:
         """Return what a job gives; called from one thread only.
 
@@ -67,7 +68,7 @@ class Worker:
         progress : callable
             Called with what is being done and the share that is done [-].
         should_stop : callable
-            Asked every `LISTEN` [s].
+            Asked every `LISTEN` [s]; returns how long the job may take to notice that it is to stop [s], None to go on.
 
         Raises
         ------
@@ -84,9 +85,9 @@ class Worker:
             self._again()
             raise SolveError(DIED) from error
 
-    def _answer(self, progress: Callable[[str, float | None], None], should_stop: Callable[[], bool]) -> Any:
+    def _answer(self, progress: Callable[[str, float | None], None], should_stop: Callable[[], float | None]) -> Any:
         """Return the answer to the job that was sent."""
-        patience = GRACE
+        told = None
         while True:
             if self._pipe.poll(LISTEN):
                 kind, *content = self._pipe.recv()
@@ -101,10 +102,11 @@ class Worker:
                         raise ConfigError(content[0])
                     case _:
                         raise SolveError(content[0])
-            if should_stop():
+            grace = should_stop()
+            if grace is not None:
                 self._stop.set()
-                patience -= LISTEN
-                if patience <= 0:
+                told = time.monotonic() if told is None else told
+                if time.monotonic() > told + grace:
                     self._again()
                     raise Stopped("stopped")
 

@@ -1,57 +1,3 @@
-// On a page narrower than this a figure's panels stand one above the other [px].
-const NARROW = 700;
-
-const axesOf = (layout, letter) => Object.keys(layout).filter((key) => new RegExp(`^${letter}axis\\d*$`).test(key));
-
-const stacked = (figure) => {
-  const { layout } = figure;
-  const columns = new Set(axesOf(layout, "x").map((name) => String(layout[name].domain))).size;
-  return columns > 1 ? columnsStacked(figure, columns) : legendsAbove(figure);
-};
-
-// Panels that stood beside each other; their titles and colour bars go with them.
-const columnsStacked = (figure, count) => {
-  const { layout } = figure;
-  const gap = 0.34 / count;
-  const tall = (1 - gap * (count - 1)) / count;
-  const tops = Array.from({ length: count }, (_, i) => 1 - i * (tall + gap));
-  const bars = figure.data.some((trace) => trace.marker?.showscale);
-  axesOf(layout, "x").forEach((name, i) => {
-    layout[name].domain = [0, bars ? 0.8 : 1];
-    layout[name.replace("x", "y")].domain = [Math.max(tops[i] - tall, 0), tops[i]];
-  });
-  layout.annotations
-    .filter((note) => note.xref === "paper")
-    .forEach((title, i) => Object.assign(title, { x: 0, xanchor: "left", y: tops[i] }));
-  for (const trace of figure.data) {
-    const top = tops[Number((trace.xaxis ?? "x").slice(1) || 1) - 1];
-    if (trace.marker?.colorbar) Object.assign(trace.marker.colorbar, { x: 0.82, y: top - tall / 2, len: tall });
-  }
-  layout.height = 360 * count;
-  Object.assign(layout.margin, { l: 60, r: 10 });
-  return figure;
-};
-
-// Legends that stood beside their panels go above them.
-const legendsAbove = (figure) => {
-  const { layout } = figure;
-  const rows = axesOf(layout, "y");
-  const gap = 0.08;
-  const share = rows.reduce((sum, name) => sum + layout[name].domain[1] - layout[name].domain[0], 0);
-  let top = 1;
-  rows.forEach((name, i) => {
-    const tall = ((layout[name].domain[1] - layout[name].domain[0]) / share) * (1 - gap * (rows.length - 1));
-    layout[name].domain = [Math.max(top - tall, 0), top];
-    const place = { orientation: "h", x: 0, xanchor: "left", y: top, yanchor: "bottom", font: { size: 10 } };
-    layout[i ? `legend${i + 1}` : "legend"] = place;
-    top -= tall + gap;
-  });
-  layout.height = 1200;
-  Object.assign(layout.margin, { l: 50, t: 130 });
-  for (const menu of layout.updatemenus ?? []) menu.y = 1.06;
-  return figure;
-};
-
 // Dash gives no names to its sliders, and to its lists only what is chosen: they get the words of their label.
 const named = () => {
   for (const thumb of document.querySelectorAll('[role="slider"]:not([aria-label])')) {
@@ -66,7 +12,19 @@ const named = () => {
     list.setAttribute("aria-labelledby", wanted);
   }
 };
-new MutationObserver(named).observe(document.documentElement, { childList: true, subtree: true });
+
+// A replay is loaded once it is to be seen, not with every flight.
+const played = () => {
+  for (const frame of document.querySelectorAll("iframe.space:not([src])")) {
+    if (frame.offsetParent) frame.src = frame.dataset.src;
+  }
+};
+
+const mended = () => {
+  named();
+  played();
+};
+new MutationObserver(mended).observe(document.documentElement, { childList: true, subtree: true });
 
 window.dash_clientside = Object.assign({}, window.dash_clientside, {
   explorer: {
@@ -84,9 +42,22 @@ window.dash_clientside = Object.assign({}, window.dash_clientside, {
     mark(texts, own) {
       return own.map((text, index) => (String(texts[index] ?? "").trim() === text ? "field" : "field changed"));
     },
-    fit: (figure) => (figure && window.innerWidth < NARROW ? stacked(structuredClone(figure)) : figure),
+    fit: (figure, theme) => (figure ? fitted(figure, theme) : window.dash_clientside.no_update),
+    // Ask again how the work stands once it was answered, never while an answer is awaited.
+    pulse(next, count) {
+      if (next) setTimeout(() => window.dash_clientside.set_props("tick", { n_intervals: (count ?? 0) + 1 }), next[0]);
+    },
+    theme(clicks) {
+      if (clicks) window.theme.turn();
+      return window.theme.now();
+    },
     show(view) {
+      requestAnimationFrame(played);
       return ["trim", "locus", "flight"].map((name) => (name === view ? {} : { display: "none" }));
+    },
+    shape(chosen) {
+      requestAnimationFrame(played);
+      return `as-${chosen}`;
     },
     download(clicks, text, name) {
       const link = document.createElement("a");
