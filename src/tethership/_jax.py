@@ -33,16 +33,16 @@ PLAIN = (
 )
 """Other modules with neither JAX nor numpy, and packages that hold such ones."""
 
-COMPUTING = ("cli.between", "studies.docking_paper.cli.figures")
-"""Modules of commands that compute."""
+COMPUTING = ("_kept", "_outline", "_programs", "cli.between", "studies.docking_paper.cli.figures")
+"""Modules of the package's root and of commands that compute."""
 
 
 def computes(name: str) -> bool:
     """Return whether a module is one that uses JAX or numpy; the faces of rooms use nothing."""
     package, _, inside = name.partition(".")
-    if package != "tethership" or "." not in inside or inside in PLAIN:
+    if package != "tethership" or inside in PLAIN:
         return False
-    return not inside.startswith(COMMAND) or inside in COMPUTING
+    return inside in COMPUTING or ("." in inside and not inside.startswith(COMMAND))
 
 
 def set_up() -> None:
