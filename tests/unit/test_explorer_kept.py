@@ -124,6 +124,20 @@ def test_a_page_goes_before_what_nobody_has_asked_for(known, desk):
     assert [job[0] for job in desk.worker.jobs] == ["trim", "flight", "locus"]
 
 
+def test_what_is_computed_ahead_is_not_given_up_for_what_else_is(known, desk, monkeypatch):
+    """It takes longer than a page would be waited for, and nobody asks after it meanwhile."""
+    monkeypatch.setattr("tethership.explorer.queue.GONE", 0.02)
+    desk.worker.free.clear()
+    ahead = list(known.at_start("docking"))
+    for request in ahead:
+        desk.ask(AHEAD, request)
+    until(lambda: desk.worker.jobs)
+    time.sleep(0.2)
+    desk.worker.free.set()
+    until(lambda: all(desk.done(request.view, request.key) for request in ahead))
+    assert desk.worker.graces == []
+
+
 def test_going_back_computes_nothing(known, desk):
     for speed in (7, 8, 9):
         assert desk.ask("page", trim_at(known, speed), 20.0).status == "done"

@@ -156,7 +156,7 @@ class Desk:
             while not self._closed:
                 waiting = [standing for standing in self._standings.values() if standing.status == "waiting"]
                 if waiting:
-                    pages = {request for (client, _), request in self._wanted.items() if client != AHEAD}
+                    pages = self._of_pages()
                     run = min(waiting, key=lambda one: (one.request not in pages, LAST[one.request.view], one.asking))
                     self._running = run.request
                     self._stopping = None
@@ -164,6 +164,10 @@ class Desk:
                     return run
                 self._changed.wait()
         return None
+
+    def _of_pages(self) -> set[Request]:
+        """Return what pages want, and not only what is computed ahead of them."""
+        return {request for (client, _), request in self._wanted.items() if client != AHEAD}
 
     def _note(self, run: Standing, **entries: Any) -> None:
         """Write down how a run stands, unless it was cancelled, dropped or asked for anew meanwhile."""
@@ -201,7 +205,8 @@ class Desk:
         with self._changed:
             running = self._running
             if running is not None and self._stopping is None:
-                waited_for = any(standing.status == "waiting" for standing in self._standings.values())
+                pages = self._of_pages()
+                waited_for = any(one.status == "waiting" and one.request in pages for one in self._standings.values())
                 silence = time.monotonic() - self._seen.get(running, 0.0)
                 if silence > (GONE if waited_for else FORGOTTEN):
                     self._standings.pop(running, None)
