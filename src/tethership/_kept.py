@@ -9,6 +9,7 @@ cannot be kept (a class of one's own in it, a host callback, a transformation ar
 import functools
 import hashlib
 import importlib.metadata
+import importlib.util
 import json
 import sys
 from collections.abc import Callable, Hashable, Iterable
@@ -117,7 +118,7 @@ class Kept(Generic[Result]):
 
     def _found(self, leaves: list[Any], structure: Structure) -> _Program | None:
         """Return the program for what is given, from the folder or made; None where it cannot be kept."""
-        if _programs.folder() is None:
+        if _programs.folder() is None or not _can_write():
             return None
         try:
             name = f"{self.__name__.strip('_')}-{_key(self, leaves, structure)}"
@@ -218,6 +219,12 @@ def _world() -> list[Any]:
     settings = {name: repr(getattr(jax.config, name, None)) for name in sorted(jax.config.values)}
     checks = getattr(sys.modules.get("equinox._errors"), "EQX_ON_ERROR", None)
     return [_SOURCE, _versions(), jax.default_backend(), checks, settings]
+
+
+@functools.cache
+def _can_write() -> bool:
+    """Return whether what `jax.export` needs to write programs is there."""
+    return importlib.util.find_spec("flatbuffers") is not None
 
 
 @functools.cache

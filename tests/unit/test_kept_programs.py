@@ -232,6 +232,13 @@ def test_no_cache_no_programs(place, scaled, request):
     assert Kept(scaled[0])._found(*jax.tree.flatten(((PAIR,), {}))) is None
 
 
+def test_without_a_writer_nothing_is_traced_twice(folder, scaled, monkeypatch):
+    monkeypatch.setattr(_kept, "_can_write", lambda: False)
+    Kept(scaled[0])(PAIR)
+    assert scaled[1] == ["word"]
+    assert kept_files(folder) == []
+
+
 def test_transformations_trace(folder, scaled):
     function = Kept(scaled[0])
     many = jax.vmap(lambda x: function(Pair(x, PAIR.second, "word"))[0].first)(jnp.ones((4, 3)))
