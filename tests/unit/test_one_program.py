@@ -10,8 +10,6 @@ import numpy as np
 import pytest
 
 import tethership as ts
-from tethership.campaign.flights import Flyer
-from tethership.campaign.plan import make_plan
 from tethership.physics.gust import CosineGust
 
 COMPILED = "/jax/core/compile/backend_compile_duration"
@@ -50,21 +48,6 @@ def test_layers_sas_and_gusts_are_switches():
         for scenario, point, layers, sas in sets:
             ts.fly(scenario, point, stop=1.0, layers=layers, sas=sas)
     assert more == []
-
-
-def test_starts_are_found_by_one_program_whatever_is_varied():
-    plan = make_plan("layers", {"samples": 48})
-    first = Flyer(plan.scenario, plan.names, plan.values[0, 0], plan.lanes)
-    names, example = ("vehicle.body.mass", "cables.nose.length", "vehicle.fins.*.area"), np.array([190.0, 30.0, 3.0])
-    values = np.repeat(example[None], plan.lanes, axis=0)
-    with counted() as more:
-        second = Flyer(plan.scenario, names, example, plan.lanes)
-        loops, starts, left = second._prepare(values)
-    assert more == []
-    assert first._differ != second._differ
-    assert starts.shape[-1] == left.shape[-1] == plan.lanes
-    ship = loops.plant.ship
-    assert np.all(np.asarray(ship.gravity.mass) == 190.0)
 
 
 def test_a_silent_gust_is_no_gust():

@@ -98,18 +98,15 @@ def layer_switches(scenario: Scenario, layers: Sequence[str]) -> dict[str, float
 @eqx.filter_jit
 def _prepared(
     config: ScenarioConfig,
-    places: tuple[int, ...],
+    places: tuple[tuple[int, ...], ...],
     question: Question,
-    values: Float[Array, "numbers flights"],
+    values: Float[Array, "parameters flights"],
     start: Float[Array, "unknowns"],
 ) -> tuple[ClosedLoop, Array, Array]:
-    """Return closed loops, starting vectors and what is left unbalanced, the flight last.
+    """Return closed loops, starting vectors and what is left unbalanced, the flight last."""
 
-    Every number of the configuration has its own row, whether it differs or not: one program, whatever is varied.
-    """
-
-    def one(value: Float[Array, "numbers"]) -> tuple[ClosedLoop, Array, Array]:
-        here = with_values(config, ((place,) for place in places), value)
+    def one(value: Float[Array, "parameters"]) -> tuple[ClosedLoop, Array, Array]:
+        here = with_values(config, places, value)
         plant = build_system(here)
         problem = pose(here, plant, question)
         found = nearby_equilibrium(problem, start)
@@ -121,7 +118,7 @@ def _prepared(
     example = eqx.filter_eval_shape(one, jax.ShapeDtypeStruct(values.shape[:1], values.dtype))
     static = eqx.filter(example[0], lambda leaf: isinstance(leaf, jax.ShapeDtypeStruct), inverse=True)
 
-    def arrays(value: Float[Array, "numbers"]) -> tuple[ClosedLoop, Array, Array]:
+    def arrays(value: Float[Array, "parameters"]) -> tuple[ClosedLoop, Array, Array]:
         loop, vector, left = one(value)
         return eqx.filter(loop, eqx.is_array), vector, left
 
@@ -177,9 +174,6 @@ class Flyer:
             raise ConfigError(f"two of {', '.join(names)} are the same number; name each once")
         config = scenario.config.as_arrays()
         self._config = _unbreakable(config) if unbreakable else config
-        leaves = jax.tree.leaves(self._config)
-        self._numbers = tuple(place for place, leaf in enumerate(leaves) if isinstance(leaf, np.ndarray))
-        self._own = np.array([leaves[place] for place in self._numbers])
         self._question = ask(scenario)
         self._start = jnp.zeros(len(self._question.unknowns.effort))
         self._stop = Stop.docking(scenario).conditions()
@@ -191,10 +185,7 @@ class Flyer:
 
     def _prepare(self, values: np.ndarray) -> tuple[ClosedLoop, Array, Array]:
         """Return loops, starts and what the trims left, for values of shape (lanes, names)."""
-        rows = np.repeat(self._own[:, None], len(values), axis=1)
-        for group, column in zip(self._places, values.T, strict=True):
-            rows[[self._numbers.index(place) for place in group]] = column
-        return _prepared(self._config, self._numbers, self._question, jnp.asarray(rows), self._start)
+        return _prepared(self._config, self._places, self._question, jnp.asarray(values.T), self._start)
 
     def fly(self, values: np.ndarray) -> dict[str, np.ndarray]:
         """Return the metrics of at most `lanes` cases, values [SI] of shape (cases, names), as `fly_cases` does.
