@@ -1,4 +1,7 @@
-"""What flies a campaign's batches: nothing of it is waited for without end. Real processes, and a cluster's stand-in."""
+"""What flies a campaign's batches: nothing of it is waited for without end.
+
+Real processes, and a cluster's stand-in. If this fails, a command or the suite hangs until it is killed.
+"""
 
 import os
 import time
@@ -39,17 +42,24 @@ def test_a_process_that_does_not_leave_is_ended(monkeypatch):
     pytest.fail("the process is there still")
 
 
-def test_a_caller_that_fails_waits_for_no_process(monkeypatch):
-    with pytest.raises(ConfigError, match="mine"), fresh_processes(1) as pool:
-        pool.submit(os.getpid).result(120)
-        pool.submit(time.sleep, 1000)
-        raise ConfigError("mine")
+def test_a_caller_that_fails_waits_for_no_process():
+    def failing():
+        with fresh_processes(1) as pool:
+            pool.submit(os.getpid).result(120)
+            pool.submit(time.sleep, 1000)
+            raise ConfigError("mine")
+
+    with pytest.raises(ConfigError, match="mine"):
+        failing()
 
 
 def test_a_process_that_dies_is_told(store):
     """Whatever it does when it dies; here it ends as a kill would end it."""
     plan, place = store
-    with pytest.raises(SolveError, match="a worker process died; run the same command again"), fresh_processes(1) as pool:
+    with (
+        pytest.raises(SolveError, match="a worker process died; run the same command again"),
+        fresh_processes(1) as pool,
+    ):
         fly_campaign(plan, place, Hands(_Dying(pool), 1))
 
 

@@ -64,7 +64,7 @@ def plan(small):
 
 
 def marks(folder):
-    return list((folder / "finished").glob("*"))
+    return list((folder / "finished").glob("[0-9]*"))  # and none that is still being written under another name
 
 
 def same(first, second):
@@ -124,7 +124,7 @@ def test_killed_and_started_again_it_ends_bit_identical(whole, tmp_path, small):
     folder = tmp_path / "layers"
     command = [*COMMAND, "campaign", small, "--out", str(folder), "--workers", "1", "--json"]
     started = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
-    limit = time.monotonic() + 200
+    limit = time.monotonic() + LIMIT
     while not marks(folder) and time.monotonic() < limit and started.poll() is None:
         time.sleep(0.01)
     end([started])
@@ -269,7 +269,7 @@ def test_a_worker_without_the_package_is_said_so(tmp_path, small):
     try:
         address = json.loads((tmp_path / "scheduler.json").read_text())["address"]
         command = [*COMMAND, "campaign", small, "--out", str(tmp_path / "x"), "--scheduler", address]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT)
     finally:
         end([worker, scheduler])
     assert done.returncode == 2, done.stderr
@@ -295,11 +295,11 @@ def test_a_cluster_that_loses_a_worker_loses_nothing(whole, cluster, tmp_path, s
     command = [*COMMAND, "campaign", small, "--out", str(folder), "--scheduler", address, "--json"]
     started = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
-        limit = time.monotonic() + 200
+        limit = time.monotonic() + LIMIT
         while not marks(folder) and time.monotonic() < limit and started.poll() is None:
             time.sleep(0.01)
         os.killpg(workers[0].pid, signal.SIGKILL)
-        output, errors = started.communicate(timeout=300)
+        output, errors = started.communicate(timeout=LIMIT)
     finally:
         started.kill()
         started.wait(60)

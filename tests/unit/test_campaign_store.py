@@ -4,6 +4,8 @@ Truth: the numbers that were kept; here they are drawn, not flown. If this fails
 looks safer than it is.
 """
 
+import csv
+import io
 import json
 import shutil
 
@@ -11,6 +13,7 @@ import numpy as np
 import pytest
 
 from tethership.campaign import run as campaign_run
+from tethership.campaign.answers import exceeded, failed, outcomes
 from tethership.campaign.execute import in_this_process
 from tethership.campaign.marks import Form
 from tethership.campaign.plan import make_plan
@@ -18,6 +21,7 @@ from tethership.campaign.run import run_campaign
 from tethership.campaign.store import UNITS, CampaignStore, open_results, whole_results
 from tethership.errors import ConfigError, TethershipWarning
 from tethership.results.lock import held
+from tethership.view.campaign.csv import KEPT, write_flights
 
 EVERY = [0, 1, 2, 3, 4, 5]
 
@@ -131,6 +135,24 @@ def test_chunks_are_those_that_zarr_writes(undamaged, plan, tmp_path):
     assert len(list((tmp_path / "ours" / "results.zarr" / "error_E").rglob("*"))) == 1  # its metadata
     ours.keep(shorter.batch(0), drawn(shorter.batch(0)) | {"flight_time": np.full(24, np.nan)})
     assert np.isnan(open_results(tmp_path / "ours")["flight_time"].values[0, :24]).all()
+
+
+def test_flights_are_written_as_csv_number_by_number(undamaged, plan, tmp_path):
+    """The text that a row at a time of numpy's numbers gives."""
+    data = whole_results(undamaged)
+    flags = exceeded(plan, data)
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    writer.writerow(["law", "case", *plan.sample.names, "outcome", "failed", *KEPT, *flags])
+    ended, lost = outcomes(data), failed(data)
+    for law, case in np.ndindex(ended.shape):
+        numbers = [data[name].values[law, case] for name in KEPT]
+        passed = [int(of[law, case]) for of in flags.values()]
+        drawn = plan.sample.values[case]
+        writer.writerow([plan.laws[law].name, case, *drawn, ended[law, case], int(lost[law, case]), *numbers, *passed])
+    written = write_flights(tmp_path, plan, data, flags)
+    assert written.read_bytes().decode() == text.getvalue()
+    assert "nan" in text.getvalue()
 
 
 def test_a_whole_store_is_not_touched(folder, plan):

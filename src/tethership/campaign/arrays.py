@@ -1,7 +1,7 @@
 """The Zarr group of a campaign: an array for each output, a chunk for each batch, a checksum in each chunk.
 
-Depends on: zarr with its codecs, campaign.plan. Whatever the metadata say is held against what the plan makes of them: a group or array
-whose metadata are damaged gets them anew, and its chunks stay.
+Depends on: zarr with its codecs, campaign.plan. Whatever the metadata say is held against what the plan makes of them:
+a group or array whose metadata are damaged gets them anew, and its chunks stay.
 """
 
 import shutil
@@ -76,7 +76,7 @@ class Arrays:
         return self._open[name]
 
     def write(self, name: str, batch: Batch, values: np.ndarray) -> None:
-        """Write a batch's part of an output, one chunk, as zarr encodes it; zarr itself takes a millisecond for each."""
+        """Write a batch's part of an output, one chunk, as zarr would: it takes a millisecond for each."""
         form = Form.of(values)
         array = self.output(name, form)
         place = (batch.law, batch.first // self._plan.lanes, *(0 for _ in form.shape))

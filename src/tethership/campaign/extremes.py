@@ -160,7 +160,10 @@ def _drawn(flights: int, place: np.ndarray, draws: int, seed: int) -> np.ndarray
 def _fitted(
     excesses: np.ndarray, broken: np.ndarray, weights: np.ndarray, flights: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return ξ, σ and the share above the threshold of each sample, NaN where known excesses are few or all the same."""
+    """Return ξ, σ and the share above the threshold of each sample; ξ and σ are NaN where too few excesses are known.
+
+    So they are where all are the same.
+    """
     known = weights[:, ~broken] > 0
     heights = excesses[~broken]
     spread = np.where(known, heights, -np.inf).max(1, initial=-np.inf) > np.where(known, heights, np.inf).min(

@@ -69,7 +69,7 @@ def _ended(pool: Executor) -> Iterator[Executor]:
 
 
 def _end_processes(pool: Executor, patience: float) -> None:
-    """Send a pool's processes home; those that have not left after a while [s] are ended, so that none is waited for."""
+    """Send a pool's processes home; those that have not left after a while [s] are ended: none is waited for."""
     processes = list((getattr(pool, "_processes", None) or {}).values())
     pool.shutdown(wait=False, cancel_futures=True)
     limit = time.monotonic() + patience

@@ -69,7 +69,7 @@ class _Counted(NamedTuple):
     heights: np.ndarray
     weights: np.ndarray
     known: np.ndarray
-    count: np.ndarray
+    number: np.ndarray
     largest: np.ndarray
     bounded: np.ndarray
 
@@ -87,19 +87,22 @@ def _fitted(rows: _Counted) -> Fits:
     left, place, right = (PLACES[np.clip(best + i, 0, len(PLACES) - 1)] / rows.largest for i in (-1, 0, 1))
     theta = _root(rows, left, place, right)
     grown = _grown(rows, theta)
-    scale = np.einsum("ij,ij->i", rows.weights, np.log1p(grown)) / (theta * rows.count)
+    scale = np.einsum("ij,ij->i", rows.weights, np.log1p(grown)) / (theta * rows.number)
     return Fits(theta * scale, scale)
 
 
 def _best_place(rows: _Counted) -> np.ndarray:
-    """Return where in `PLACES` the likelihood is largest, shape (rows,); rows with one largest excess share logarithms."""
-    best = np.zeros(len(rows.count), int)
+    """Return where in `PLACES` the likelihood is largest, shape (rows,).
+
+    Rows with the same largest excess share their logarithms.
+    """
+    best = np.zeros(len(rows.number), int)
     for largest in np.unique(rows.largest):
         own = rows.largest == largest
         theta = PLACES / largest
         logarithms = np.log1p(theta[:, None] * np.minimum(rows.heights, largest)).T
-        shape = rows.weights[own] @ logarithms / rows.count[own, None]
-        value = -rows.count[own, None] * np.log(shape / theta) - rows.known[own] @ logarithms
+        shape = rows.weights[own] @ logarithms / rows.number[own, None]
+        value = -rows.number[own, None] * np.log(shape / theta) - rows.known[own] @ logarithms
         best[own] = np.argmax(np.where(rows.bounded[own, None] | (shape > LEAST_SHAPE), value, -np.inf), axis=1)
     return best
 
@@ -115,7 +118,7 @@ def _slope(rows: _Counted, theta: np.ndarray) -> np.ndarray:
     share = rows.heights / (1.0 + grown)
     whole = np.einsum("ij,ij->i", rows.weights, np.log1p(grown))
     slope = np.einsum("ij,ij->i", rows.weights, share)
-    return rows.count * (1.0 / theta - slope / whole) - np.einsum("ij,ij->i", rows.known, share)
+    return rows.number * (1.0 / theta - slope / whole) - np.einsum("ij,ij->i", rows.known, share)
 
 
 def _root(rows: _Counted, left: np.ndarray, place: np.ndarray, right: np.ndarray) -> np.ndarray:
@@ -129,9 +132,7 @@ def _root(rows: _Counted, left: np.ndarray, place: np.ndarray, right: np.ndarray
         crossed = value * high < 0.0
         left, low = np.where(crossed, right, left), np.where(crossed, high, 0.5 * low)
         done = ~falls | (value == 0.0) | (np.abs(new - right) <= CLOSE * np.abs(new))
-        right, high = new, value
+        place, right, high, falls = new, new, value, falls & ~done
         if done.all():
             break
-        falls &= ~done
-        place = new
-    return new
+    return place

@@ -17,7 +17,7 @@ from tethership._version import __version__
 from tethership.campaign.arrays import RESULTS, Arrays, zarr_library
 from tethership.campaign.engine import engine_name
 from tethership.campaign.manifest import MANIFEST, Manifest, read_manifest, write_manifest
-from tethership.campaign.marks import MARKS, Form, Mark, read_marks, write_mark
+from tethership.campaign.marks import MARKS, Mark, read_marks, write_mark
 from tethership.campaign.plan import Batch, Plan
 from tethership.errors import ConfigError, TethershipWarning
 from tethership.results import array_digest, table_digest

@@ -10,6 +10,7 @@ from typing import Any
 import h5py
 import numpy as np
 import xarray as xr
+from xarray.conventions import cf_encoder
 
 PROPERTIES = "_NCProperties"
 """Attribute that says by which netCDF library a file was written."""
@@ -31,7 +32,7 @@ def netcdf_bytes(dataset: xr.Dataset) -> bytes:
     -----
     HDF5 writes into memory: where it meets a full disk itself it ends the process.
     """
-    encoded, attributes = xr.conventions.cf_encoder(dict(dataset.variables), dataset.attrs)
+    encoded, attributes = cf_encoder(dict(dataset.variables), dataset.attrs)
     with h5py.File("memory", "w", driver="core", backing_store=False, track_order=True) as file:
         _describe(file, attributes)
         file.attrs[PROPERTIES] = np.bytes_(f"version=2,hdf5={h5py.version.hdf5_version},h5py={h5py.__version__}")
