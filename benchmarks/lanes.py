@@ -70,7 +70,7 @@ def made(ready: Ready, width: int) -> tuple[Any, dict[str, float]]:
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     compiler = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     return program, {
-        "statements": program.statements,
+        "statements": program.recipe.statements,
         "trace_and_write_s": time.process_time() - begun,
         "compiler_s": compiler,
         "compiler_MB": after.ru_maxrss / 1e3,

@@ -65,7 +65,7 @@ def source_digest(root: Path = Path(__file__).parent) -> str:
     """Return a digest of all files of the package: code, vehicles, scenarios, fits."""
     digest = hashlib.sha256()
     for path in sorted(root.rglob("*")):
-        if path.suffix in (".py", ".toml", ".json", ".css", ".js", ".html") and path.is_file():
+        if path.suffix in (".py", ".toml", ".json", ".css", ".js", ".html", ".h") and path.is_file():
             digest.update(str(path.relative_to(root)).encode())
             digest.update(path.read_bytes())
     return digest.hexdigest()
@@ -202,6 +202,18 @@ def _key(kept: Kept, leaves: list[Any], structure: Structure) -> str:
     name = f"{kept.__module__}:{kept.__qualname__}"
     if not Path(__file__).is_file() or named(name) not in (kept, kept.__wrapped__):
         raise UnknownCodeError(name)
+    return key_of(name, jax.tree.unflatten(structure, leaves))
+
+
+def key_of(name: str, tree: Any) -> str:
+    """Return a digest of all that something made of a PyTree, for its structure and shapes, depends on.
+
+    Raises
+    ------
+    UnknownCodeError
+        The structure has code that may change and keep its name.
+    """
+    leaves, structure = jax.tree.flatten(tree)
     arrays = [_described(leaf) for leaf in leaves if eqx.is_array(leaf)]
     others = outline(tuple(None if eqx.is_array(leaf) else leaf for leaf in leaves))
     whole = [_world(), name, structure_outline(structure), arrays, others]

@@ -4,6 +4,8 @@ One program flies all flights of a structure, whatever differs between them: eve
 program, the reference, holds once what all share.
 """
 
+import contextlib
+import json
 import os
 import warnings
 from collections.abc import Callable
@@ -14,8 +16,11 @@ import jax
 import platformdirs
 from jaxtyping import Array, Float
 
+from tethership._kept import UnknownCodeError, key_of
+from tethership._outline import restored_structure, structure_outline
+from tethership._programs import load, store
 from tethership.errors import ConfigError, TethershipWarning, shown
-from tethership.lanes import NotCompiled, Program, identity
+from tethership.lanes import NotCompiled, Program, Recipe, identity, widest
 from tethership.plant import ClosedLoop
 from tethership.simulation import BatchResult, Beat, StopConditions, differing, fly_lanes, fly_to_its_end, hoisted
 
@@ -34,6 +39,9 @@ class Terms(NamedTuple):
 
 Engine = Callable[[ClosedLoop, Float[Array, "n flights"], int], BatchResult]
 """Flies loops and starts, the flight last, on so many threads."""
+
+FOLDER = platformdirs.user_cache_path("tethership") / "lanes"
+"""Where compiled libraries are kept."""
 
 _programs: dict[Any, Program | NotCompiled] = {}
 
@@ -54,14 +62,23 @@ def find_engine(loops: ClosedLoop, vectors: Float[Array, "n flights"], terms: Te
     ConfigError
         `TETHERSHIP_ENGINE` names another engine.
     """
+    return find_lanes(loops, vectors, terms) or by_xla(differing(loops), terms)
+
+
+def find_lanes(loops: ClosedLoop, vectors: Float[Array, "n flights"], terms: Terms) -> Engine | None:
+    """Return what flies a batch by lanes, None where there are none; arguments and errors as in `find_engine`."""
+    if _asked() == "xla":
+        return None
+    program = _program(loops, vectors, terms)
+    return by_lanes(program, terms) if isinstance(program, Program) else None
+
+
+def _asked() -> str:
+    """Return the engine that `TETHERSHIP_ENGINE` asks for."""
     asked = os.environ.get("TETHERSHIP_ENGINE") or "lanes"
     if asked not in ENGINES:
         raise ConfigError(f"TETHERSHIP_ENGINE is {shown(asked)}; set {' or '.join(ENGINES)}, or leave it out")
-    if asked == "lanes":
-        program = _program(loops, vectors, terms)
-        if isinstance(program, Program):
-            return by_lanes(program, terms)
-    return by_xla(differing(loops), terms)
+    return asked
 
 
 def by_lanes(program: Program, terms: Terms) -> Engine:
@@ -125,7 +142,29 @@ def compile_flights(
         return fly_to_its_end(loop, common.stop, common.limits, own[1], common.time_limit, common.rhythm)
 
     own = jax.tree.map(lambda leaf: leaf[..., 0], (loop_leaves, vectors))
-    return Program(flight, term_leaves, own, width, platformdirs.user_cache_path("tethership") / "lanes")
+    width = width or widest()
+    with contextlib.suppress(UnknownCodeError):  # a law of one's own is traced every time
+        name = f"lanes-{key_of(f'flights over {width} lanes', (loops, vectors, terms))}"
+        recipe = _read(load(name))
+        program = Program(flight, term_leaves, own, width, FOLDER, recipe=recipe)
+        if recipe is None:
+            store(name, _written(program.recipe))
+        return program
+    return Program(flight, term_leaves, own, width, FOLDER)
+
+
+def _written(recipe: Recipe) -> bytes:
+    """Return a recipe as a file's content."""
+    return json.dumps(recipe._replace(structure=structure_outline(recipe.structure))).encode()
+
+
+def _read(content: bytes | None) -> Recipe | None:
+    """Return the recipe of a file's content, None where there is none."""
+    if content is None:
+        return None
+    source, statements, results, structure = json.loads(content)
+    described = tuple((tuple(shape), kind) for shape, kind in results)
+    return Recipe(source, statements, described, restored_structure(structure))
 
 
 def _parted(tree: Any) -> tuple[list[Array], Any]:
@@ -144,7 +183,7 @@ def _whole(leaves: Any, rest: Any) -> Any:
 
 def engine_name() -> str:
     """Return what flies batches here: "xla", or width, compiler and processor of lanes; two never mix in a campaign."""
-    if (os.environ.get("TETHERSHIP_ENGINE") or "lanes") == "xla":
+    if _asked() == "xla":
         return "xla"
     try:
         return identity()

@@ -48,7 +48,7 @@ class Batch(NamedTuple):
     values : ndarray
         Of everything that differs, in SI: [m/s], [rad], [N], …; shape (cases, names).
     verified : tuple of int
-        Places in the batch of cases that are flown again adaptively.
+        Places in the batch of cases that are flown again to tight tolerance.
     """
 
     number: int

@@ -135,7 +135,7 @@ class CampaignConfig(Table):
     step : float
         Length of a fixed step h [s].
     verified : float
-        Share of the flights that are flown again adaptively [-].
+        Share of the flights that are flown again with steps of h/8 (by XLA: adaptively) [-].
     samples, replicates, worst, random : int
         How many cases, scrambles, and flights of each law that are kept: the worst, and others.
     """

@@ -12,7 +12,7 @@ import os
 import threading
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax
 import numpy as np
@@ -26,6 +26,27 @@ from tethership.lanes.rules import gathered
 from tethership.lanes.scalars import Graph, Scalar
 
 _Doubles = ctypes.POINTER(ctypes.c_double)
+
+
+class Recipe(NamedTuple):
+    """What a traced function is compiled from: whoever keeps it need not trace again.
+
+    Attributes
+    ----------
+    source : str
+        C++.
+    statements : int
+        Expressions that are computed for a group of flights, those of a loop counted once.
+    results : tuple of (tuple of int, str)
+        Shape and type of each array of the results.
+    structure : PyTreeDef
+        What they make up.
+    """
+
+    source: str
+    statements: int
+    results: tuple[tuple[tuple[int, ...], str], ...]
+    structure: Any
 
 
 class Program:
@@ -43,11 +64,12 @@ class Program:
         Where its library is kept for the next process.
     compiler : str, optional
         As in `compiler.library`.
+    recipe : Recipe, optional
+        Of the same function, arguments and width, made before; the function is then not called.
 
     Attributes
     ----------
-    statements : int
-        Expressions that are computed for a group of flights, those of a loop counted once.
+    recipe : Recipe
     width : int
         Flights in a vector.
 
@@ -65,46 +87,49 @@ class Program:
         width: int | None = None,
         folder: Path | None = None,
         compiler: str | None = None,
+        recipe: Recipe | None = None,
     ) -> None:
         self.width = width or widest()
         shared_leaves, self._shared_tree = jax.tree.flatten(shared)
         own_leaves, self._own_tree = jax.tree.flatten(own)
         self._shared_shapes = [np.shape(leaf) for leaf in shared_leaves]
         self._own_shapes = [np.shape(leaf) for leaf in own_leaves]
-        self._results_tree: Any = None  # known once the function was traced
-        split = len(shared_leaves)
-
-        def flat(*leaves: Any) -> list[Any]:
-            results = function(self._shared_tree.unflatten(leaves[:split]), self._own_tree.unflatten(leaves[split:]))
-            found, self._results_tree = jax.tree.flatten(results)
-            return found
-
-        closed = jax.make_jaxpr(flat)(*shared_leaves, *own_leaves)
-        self._results = [(variable.shape, np.dtype(variable.dtype)) for variable in closed.out_avals]
-        source = self._source(closed)
-        self._run = library(source, self.width, folder, compiler).tethership_lanes_run
+        self.recipe = recipe or self._traced(function, shared_leaves, own_leaves)
+        self._results = [(shape, np.dtype(kind)) for shape, kind in self.recipe.results]
+        self._run = library(self.recipe.source, self.width, folder, compiler).tethership_lanes_run
         self._run.argtypes = [_Doubles, ctypes.POINTER(_Doubles), _Doubles, _Doubles, ctypes.c_long]
         self._run.argtypes += [ctypes.POINTER(ctypes.c_long)]
         self._run.restype = None
 
-    def _source(self, closed: Any) -> str:
-        """Return the C++ of a traced function."""
+    def _traced(self, function: Callable[[Any, Any], Any], shared: list[Any], own: list[Any]) -> Recipe:
+        """Have JAX trace the function, and write it out."""
+        structure: Any = None
+
+        def flat(*leaves: Any) -> list[Any]:
+            nonlocal structure
+            given = leaves[: len(shared)], leaves[len(shared) :]
+            found, structure = jax.tree.flatten(
+                function(self._shared_tree.unflatten(given[0]), self._own_tree.unflatten(given[1]))
+            )
+            return found
+
+        closed = jax.make_jaxpr(flat)(*shared, *own)
         graph, operands = Graph(), []
         shapes = [*((shape, True) for shape in self._shared_shapes), *((shape, False) for shape in self._own_shapes)]
         places, tables = {True: 0, False: 0}, 0
-        for (shape, shared), variable in zip(shapes, closed.jaxpr.invars, strict=True):
+        for (shape, is_shared), variable in zip(shapes, closed.jaxpr.invars, strict=True):
             size = int(np.prod(shape))
             if size > LARGE:
-                operands.append(Table(tables, shared, np.arange(size).reshape(shape)))
+                operands.append(Table(tables, is_shared, np.arange(size).reshape(shape)))
                 tables += 1
                 continue
             boolean = np.dtype(variable.aval.dtype) == bool
-            operands.append(_inputs(graph, shape, shared, places[shared], boolean))
-            places[shared] += size
+            operands.append(_inputs(graph, shape, is_shared, places[is_shared], boolean))
+            places[is_shared] += size
         results = walk(graph, closed.jaxpr, [lifted(value) for value in closed.consts], operands)
         rows = [scalar for result in results for scalar in gathered(graph, result).ravel()]
-        self.statements = _count(graph.blocks[2])
-        return rendered(graph, rows, self.width)
+        described = tuple((tuple(value.shape), str(value.dtype)) for value in closed.out_avals)
+        return Recipe(rendered(graph, rows, self.width), _count(graph.blocks[2]), described, structure)
 
     def __call__(self, shared: Any, own: Any, threads: int | None = None, taken: "Taken | None" = None) -> Any:
         """Return the function's results for many flights.
@@ -162,7 +187,7 @@ class Program:
             part = rows[first : first + size].reshape(*shape, rows.shape[-1])
             found.append(part if dtype == np.float64 else np.nan_to_num(part).astype(dtype))
             first += size
-        return self._results_tree.unflatten(found)
+        return self.recipe.structure.unflatten(found)
 
 
 class Taken:

@@ -290,7 +290,8 @@ def _checks(answers: dict[str, Any]) -> Section:
     outcomes = [[law, name, count] for law, of in answers["laws"].items() for name, count in of["outcomes"].items()]
     shown.append(Table("How the flights ended.", ["law", "outcome", "flights"], outcomes))
     words = [
-        f"{error['flights']} flights, drawn at random, were flown again adaptively to tight tolerance. What the steps "
+        f"{error['flights']} flights, drawn at random, were flown again "
+        "with steps of an eighth (without a C++ compiler: adaptively). What the steps "
         "change is in no interval above; a flight close to a limit may change sides."
     ]
     return Section("Checks", words, shown)
