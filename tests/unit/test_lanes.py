@@ -56,6 +56,13 @@ MATHEMATICS = {
         jnp.tile(x, (2, 3)),
     ],
     "indices": lambda _, x: [x[(9 * x[0]).astype(int) % 4], jnp.outer(x, x)[(9 * x[:2]).astype(int) % 4]],
+    "writing": lambda _, x: [x.at[1].set(x[0]), x.at[jnp.array([3, 0])].add(x[:2]), x.at[1:3].multiply(2.0)],
+    "writing at indices": lambda _, x: [
+        x.at[(9 * x[0]).astype(int) % 4].set(7.0),
+        jnp.outer(x, x).at[(9 * x[1]).astype(int) % 4, 1].add(x[2]),
+        x.at[(9 * x[0]).astype(int)].max(0.1),
+        jax.lax.dynamic_update_slice(x, x[:2] + 1.0, ((9 * x[3]).astype(int),)),
+    ],
     "derivatives": lambda _, x: jax.jacfwd(lambda y: jnp.sin(y) * jnp.linalg.norm(y))(x),
     "gradients": lambda _, x: jax.grad(lambda y: jnp.sum(jnp.cos(y) ** 2) / (1.0 + y @ y))(x),
     "written-out loop": lambda _, x: jax.lax.scan(lambda c, y: (c * y + 1.0, c), x[0], x),

@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from jax.extend.core import ClosedJaxpr, Jaxpr, Literal
 
-from tethership.lanes import arithmetic, gather, moves
+from tethership.lanes import arithmetic, gather, moves, scatter
 from tethership.lanes.arrays import Operand, Table, each, filled, lifted
 from tethership.lanes.not_compiled import NotCompiled
 from tethership.lanes.rules import RULES, gathered, rule
 from tethership.lanes.scalars import FALSE, MASK, Block, Branch, Graph, Loop, Scalar, constant
 
-_ALSO = (gather, moves)
+_ALSO = (gather, moves, scatter)
 """Rooms of more rules, loaded with this one."""
 
 MOST_ROUNDS = 64

@@ -236,6 +236,21 @@ def _place(graph: Graph, row: np.ndarray, better: str) -> Scalar:
     return place
 
 
+@rule("dynamic_update_slice")
+def _dynamic_update_slice(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand]:
+    array, update, *starts = (gathered(graph, operand) for operand in operands)
+    places = [clipped(graph, s.item(), n - k) for s, n, k in zip(starts, array.shape, update.shape, strict=True)]
+    result = array.copy()
+    for target in np.ndindex(*array.shape):
+        for offset in np.ndindex(*update.shape):
+            here = TRUE
+            for start, shift, at in zip(places, offset, target, strict=True):
+                same = arithmetic.compare(graph, "eq", start, constant(float(at - shift)))
+                here = arithmetic.both(graph, here, same)
+            result[target] = arithmetic.select(graph, here, result[target], update[offset])
+    return [result]
+
+
 @rule("dynamic_slice")
 def _dynamic_slice(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand]:
     array, *starts = operands
