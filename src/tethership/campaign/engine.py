@@ -9,16 +9,16 @@ import json
 import os
 import warnings
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
-import platformdirs
 from jaxtyping import Array, Float
 
 from tethership._kept import UnknownCodeError, key_of
 from tethership._outline import restored_structure, structure_outline
-from tethership._programs import load, store
+from tethership._programs import folder, load, store
 from tethership.errors import ConfigError, TethershipWarning, shown
 from tethership.lanes import NotCompiled, Program, Recipe, identity, widest
 from tethership.plant import ClosedLoop
@@ -39,9 +39,6 @@ class Terms(NamedTuple):
 
 Engine = Callable[[ClosedLoop, Float[Array, "n flights"], int], BatchResult]
 """Flies loops and starts, the flight last, on so many threads."""
-
-FOLDER = platformdirs.user_cache_path("tethership") / "lanes"
-"""Where compiled libraries are kept."""
 
 _programs: dict[Any, Program | NotCompiled] = {}
 
@@ -146,11 +143,17 @@ def compile_flights(
     with contextlib.suppress(UnknownCodeError):  # a law of one's own is traced every time
         name = f"lanes-{key_of(f'flights over {width} lanes', (loops, vectors, terms))}"
         recipe = _read(load(name))
-        program = Program(flight, term_leaves, own, width, FOLDER, recipe=recipe)
+        program = Program(flight, term_leaves, own, width, _libraries(), recipe=recipe)
         if recipe is None:
             store(name, _written(program.recipe))
         return program
-    return Program(flight, term_leaves, own, width, FOLDER)
+    return Program(flight, term_leaves, own, width, _libraries())
+
+
+def _libraries() -> Path | None:
+    """Return where compiled libraries are kept: beside other kept programs; None where nothing is kept."""
+    programs = folder()
+    return None if programs is None else programs.parent / "lanes"
 
 
 def _written(recipe: Recipe) -> bytes:
