@@ -240,14 +240,14 @@ def _place(graph: Graph, row: np.ndarray, better: str) -> Scalar:
 def _dynamic_update_slice(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand]:
     array, update, *starts = (gathered(graph, operand) for operand in operands)
     places = [clipped(graph, s.item(), n - k) for s, n, k in zip(starts, array.shape, update.shape, strict=True)]
-    result = array.copy()
+    result, new = array.copy(), {offset: update[offset] for offset in np.ndindex(*update.shape)}
     for target in np.ndindex(*array.shape):
-        for offset in np.ndindex(*update.shape):
+        for offset, number in new.items():
             here = TRUE
             for start, shift, at in zip(places, offset, target, strict=True):
                 same = arithmetic.compare(graph, "eq", start, constant(float(at - shift)))
                 here = arithmetic.both(graph, here, same)
-            result[target] = arithmetic.select(graph, here, result[target], update[offset])
+            result[target] = arithmetic.select(graph, here, result.item(target), number)
     return [result]
 
 

@@ -42,7 +42,7 @@ def _scatter(graph: Graph, equation: Any, operands: list[Operand]) -> list[Opera
     for axis, window in zip(inner, windows, strict=True):
         sizes[axis] = updates.shape[window]
     outer = [axis for axis in range(updates.ndim) if axis not in windows]
-    result = array.copy()
+    result: Any = array.copy()
     for place in np.ndindex(*(updates.shape[axis] for axis in outer)):
         starts = _starts(numbers, indices, place, array.ndim)
         taken, starts = _within(graph, starts, array.shape, sizes, clip)
@@ -87,7 +87,7 @@ def _joined_index(
 
 def _write(
     graph: Graph,
-    array: np.ndarray,
+    array: Any,
     starts: list[Scalar],
     shifts: list[int],
     taken: Scalar,
