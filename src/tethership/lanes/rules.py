@@ -240,7 +240,8 @@ def _place(graph: Graph, row: np.ndarray, better: str) -> Scalar:
 def _dynamic_update_slice(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand]:
     array, update, *starts = (gathered(graph, operand) for operand in operands)
     places = [clipped(graph, s.item(), n - k) for s, n, k in zip(starts, array.shape, update.shape, strict=True)]
-    result, new = array.copy(), {offset: update[offset] for offset in np.ndindex(*update.shape)}
+    new: dict[tuple[int, ...], Any] = {offset: update[offset] for offset in np.ndindex(*update.shape)}
+    result = array.copy()
     for target in np.ndindex(*array.shape):
         for offset, number in new.items():
             here = TRUE
