@@ -63,6 +63,12 @@ MATHEMATICS = {
         x.at[(9 * x[0]).astype(int)].max(0.1),
         jax.lax.dynamic_update_slice(x, x[:2] + 1.0, ((9 * x[3]).astype(int),)),
     ],
+    "linear systems": lambda _, x: [
+        jnp.linalg.solve(jnp.outer(x, x[::-1]) + jnp.diag(x + 3.0), x),
+        jnp.linalg.inv(jnp.outer(x, x) - 0.3 * jnp.eye(4)[::-1]),
+        jax.jacfwd(lambda y: jnp.linalg.solve(jnp.outer(y, y) + jnp.eye(4), y))(x),
+        jnp.linalg.det(jnp.outer(x, x[::-1]) + jnp.diag(x + 3.0)),
+    ],
     "derivatives": lambda _, x: jax.jacfwd(lambda y: jnp.sin(y) * jnp.linalg.norm(y))(x),
     "gradients": lambda _, x: jax.grad(lambda y: jnp.sum(jnp.cos(y) ** 2) / (1.0 + y @ y))(x),
     "written-out loop": lambda _, x: jax.lax.scan(lambda c, y: (c * y + 1.0, c), x[0], x),

@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from jax.extend.core import ClosedJaxpr, Jaxpr, Literal
 
-from tethership.lanes import arithmetic, gather, moves, scatter
+from tethership.lanes import arithmetic, gather, linear_algebra, moves, scatter
 from tethership.lanes.arrays import Operand, Table, each, filled, lifted
 from tethership.lanes.not_compiled import NotCompiled
 from tethership.lanes.rules import RULES, gathered, rule
 from tethership.lanes.scalars import FALSE, MASK, Block, Branch, Graph, Loop, Scalar, constant
 
-_ALSO = (gather, moves, scatter)
+_ALSO = (gather, linear_algebra, moves, scatter)
 """Rooms of more rules, loaded with this one."""
 
 MOST_ROUNDS = 64
@@ -55,6 +55,15 @@ def _call(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand]
     if isinstance(found, Jaxpr):
         return walk(graph, found, [], operands)
     return _called(graph, found, operands)
+
+
+@rule("custom_linear_solve")
+def _linear_solve(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand]:
+    """Do what the solver of a linear system does; how it is differentiated was settled when it was traced."""
+    lengths, solvers = equation.params["const_lengths"], equation.params["jaxprs"]
+    before = lengths.matvec + lengths.vecmat
+    right = operands[before + lengths.solve + lengths.transpose_solve :]
+    return _called(graph, solvers.solve, [*operands[before : before + lengths.solve], *right])
 
 
 @rule("scan")

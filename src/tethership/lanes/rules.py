@@ -298,6 +298,16 @@ def table_part(graph: Graph, table: Table, starts: list[Scalar], sizes: tuple[in
     return filled(sizes, [read(graph, table, place) for place in places])
 
 
+@rule("platform_index")
+def _platform(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand]:
+    """Choose what is written for processors, or for any platform."""
+    platforms = equation.params["platforms"]
+    chosen = next((i for i, names in enumerate(platforms) if names is None or "cpu" in names), None)
+    if chosen is None:
+        raise NotCompiled("a function that is written for other platforms only")
+    return [lifted(np.asarray(chosen))]
+
+
 @rule("cumsum")
 def _cumsum(graph: Graph, equation: Any, operands: list[Operand]) -> list[Operand]:
     axis, order = equation.params["axis"], slice(None, None, -1 if equation.params["reverse"] else 1)
