@@ -19,7 +19,7 @@ from tethership.campaign.schema import CampaignConfig
 from tethership.cli import app as command_line
 from tethership.results.schema import OWN_VARIABLES, VARIABLES
 from tethership.scenario import ScenarioConfig, SolverConfig
-from tethership.scenario.load import describe_packaged
+from tethership.scenario.packaged import describe_packaged
 from tethership.scenario.vehicle_schema import VehicleConfig
 
 MARK = re.compile(r"\{\{generated:([\w-]+)\}\}")

@@ -37,6 +37,7 @@ class Worker:
     def __init__(self) -> None:
         self._context = multiprocessing.get_context("spawn")
         self._closed = False
+        self._ending = threading.Lock()
         self._start()
 
     def _start(self) -> None:
@@ -111,13 +112,17 @@ class Worker:
                     raise Stopped("stopped")
 
     def _again(self) -> None:
-        """End the process and start a fresh one."""
-        self._end()
-        if not self._closed:
-            self._start()
+        """End the process and start a fresh one, unless it was closed meanwhile from another thread."""
+        with self._ending:
+            if not self._closed:
+                self._end()
+                self._start()
 
     def _end(self) -> None:
-        """End the process: asked first, so that no file of the compilation cache is left half written."""
+        """End the process: asked first, so that no file of the compilation cache is left half written.
+
+        Done by one thread alone: a pipe that two close at once may be another file by the second time.
+        """
         self._process.terminate()
         self._process.join(0.5)
         if self._process.is_alive():
@@ -126,10 +131,11 @@ class Worker:
         self._pipe.close()
 
     def close(self) -> None:
-        """End the process for good."""
-        if not self._closed:
-            self._closed = True
-            self._end()
+        """End the process for good; from any thread."""
+        with self._ending:
+            if not self._closed:
+                self._closed = True
+                self._end()
 
 
 def _serve(pipe: Connection, stop: Any) -> None:
