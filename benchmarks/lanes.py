@@ -73,7 +73,6 @@ def made(ready: Ready, width: int) -> tuple[Any, dict[str, float]]:
         "statements": program.recipe.statements,
         "trace_and_write_s": time.process_time() - begun,
         "compiler_s": compiler,
-        "compiler_MB": after.ru_maxrss / 1e3,
     }
 
 

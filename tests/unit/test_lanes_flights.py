@@ -81,10 +81,9 @@ def test_another_set_of_names_compiles_no_other_flight(docking):
     assert len(engine._programs) == after <= before + 1
 
 
-def test_without_a_compiler_xla_flies_and_one_line_says_so(docking, monkeypatch, capsys, command):
+def test_without_a_compiler_xla_flies_and_one_line_says_so(monkeypatch):
     monkeypatch.setenv("CXX", "/no/such/compiler")
     monkeypatch.setattr(engine, "_programs", {})
-    monkeypatch.setattr(engine, "fly_lanes", None)
     flown = []
     monkeypatch.setattr(engine, "by_xla", lambda differ, terms: lambda *given: flown.append(given))
     scenario, names, values = plant("docking")
@@ -92,11 +91,22 @@ def test_without_a_compiler_xla_flies_and_one_line_says_so(docking, monkeypatch,
         TethershipWarning, match="by XLA, some ten times slower: the compiler '/no/such/compiler' does not"
     ):
         flyer = Flyer(scenario, names, values[0], COUNT)
-    assert flyer._finely is None
+    loops, vectors, _ = flyer.prepare(values)
+    flyer._engine(loops, vectors, 1)
+    assert len(flown) == 1
+    assert engine.find_lanes(loops, vectors, flyer._fine) is None
     assert engine_name() == "xla"
 
 
-def test_an_unknown_engine_is_refused(docking, monkeypatch):
+def test_any_number_of_flights_is_one_program(docking):
+    short = docking.changed({"stop.time_limit": 1.0})
+    Flyer(short, ("wind.speed",), np.array([6.0]), 8)
+    before = len(engine._programs)
+    Flyer(short, ("wind.speed",), np.array([6.0]), 16)
+    assert len(engine._programs) == before
+
+
+def test_an_unknown_engine_is_refused(monkeypatch):
     monkeypatch.setenv("TETHERSHIP_ENGINE", "gpu")
     with pytest.raises(ConfigError, match="TETHERSHIP_ENGINE is 'gpu'; set lanes or xla, or leave it out"):
         engine_name()

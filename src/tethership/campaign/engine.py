@@ -104,7 +104,7 @@ def by_xla(differ: tuple[bool, ...], terms: Terms) -> Engine:
 
 def _program(loops: ClosedLoop, vectors: Float[Array, "n flights"], terms: Terms) -> Program | NotCompiled:
     """Return the program of flights of this structure, made once a process, or why there is none."""
-    leaves, rest = _parted((loops, terms))
+    leaves, rest = _parted((_first(loops), terms))
     key = (rest, tuple((leaf.shape, str(leaf.dtype)) for leaf in leaves))
     if key not in _programs:
         try:
@@ -132,22 +132,28 @@ def compile_flights(
     NotCompiled
         There is no compiler, or the plant uses a primitive that is not known.
     """
-    (loop_leaves, loop_rest), (term_leaves, term_rest) = _parted(loops), _parted(terms)
+    one = _first(loops), vectors[..., 0]
+    (loop_leaves, loop_rest), (term_leaves, term_rest) = _parted(one[0]), _parted(terms)
 
     def flight(shared: list[Array], own: tuple[list[Array], Array]) -> BatchResult:
         common, loop = _whole(shared, term_rest), _whole(own[0], loop_rest)
         return fly_to_its_end(loop, common.stop, common.limits, own[1], common.time_limit, common.rhythm)
 
-    own = jax.tree.map(lambda leaf: leaf[..., 0], (loop_leaves, vectors))
+    own = loop_leaves, one[1]
     width = width or widest()
     with contextlib.suppress(UnknownCodeError):  # a law of one's own is traced every time
-        name = f"lanes-{key_of(f'flights over {width} lanes', (loops, vectors, terms))}"
+        name = f"lanes-{key_of(f'flights over {width} lanes', (*one, terms))}"
         recipe = _read(load(name))
         program = Program(flight, term_leaves, own, width, _libraries(), recipe=recipe)
         if recipe is None:
             store(name, _written(program.recipe))
         return program
     return Program(flight, term_leaves, own, width, _libraries())
+
+
+def _first(loops: ClosedLoop) -> ClosedLoop:
+    """Return the first flight's loop: programs are the same for any number of flights."""
+    return jax.tree.map(lambda leaf: leaf[..., 0] if eqx.is_array(leaf) else leaf, loops)
 
 
 def _libraries() -> Path | None:

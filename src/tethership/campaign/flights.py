@@ -188,8 +188,7 @@ class Flyer:
         loops, vectors, _ = self.prepare(_probe(example, lanes))
         self._engine = find_engine(loops, vectors, self.terms)
         control = scenario.config.control
-        fine = self.terms._replace(rhythm=beats_of(step / FINER, control.period, control.delay))
-        self._finely = find_lanes(loops, vectors, fine)
+        self._fine = self.terms._replace(rhythm=beats_of(step / FINER, control.period, control.delay))
 
     def prepare(self, values: np.ndarray) -> tuple[ClosedLoop, Array, Array]:
         """Return loops, starts and what the trims left, for values of shape (lanes, names)."""
@@ -233,13 +232,14 @@ class Flyer:
         result = self._engine(loops, vectors, threads)
         found = {**metrics_of(result), "unbalanced": np.asarray(left)}
         found = {name: array[:count] for name, array in found.items()}
-        if self._finely is None or not len(verified):
+        finely = find_lanes(loops, vectors, self._fine) if len(verified) else None
+        if finely is None:
             return found, None
         chosen = np.asarray(verified)
         few, starts = jax.tree.map(
             lambda leaf: np.asarray(leaf)[..., chosen] if eqx.is_array(leaf) else leaf, (loops, vectors)
         )
-        return found, metrics_of(self._finely(few, starts, threads))
+        return found, metrics_of(finely(few, starts, threads))
 
 
 def _check_ticks(names: Sequence[str]) -> None:

@@ -59,7 +59,7 @@ def find_compiler(asked: str | None) -> Compiler:
         There is none, or it does not run.
     """
     if asked is not None:
-        found = [asked.split()] if asked.strip() else []
+        found = [asked.split()]
     else:
         found = [[path] for name in ("c++", "g++", "clang++") if (path := shutil.which(name))]
         if importlib.util.find_spec("ziglang"):
@@ -109,7 +109,7 @@ def identity(width: int | None = None, compiler: str | None = None) -> str:
     NotCompiled
         There is no compiler.
     """
-    found, width = find_compiler(compiler if compiler is not None else os.environ.get("CXX")), width or widest()
+    found, width = find_compiler(compiler or os.environ.get("CXX") or None), width or widest()
     told = [*found.command, found.version, *options(width), processor()]
     return f"lanes of {width}, {hashlib.sha256(chr(0).join(told).encode()).hexdigest()[:12]}"
 
@@ -133,7 +133,7 @@ def library(source: str, width: int, folder: Path | None, compiler: str | None =
     NotCompiled
         There is no compiler, or it fails.
     """
-    found = find_compiler(compiler if compiler is not None else os.environ.get("CXX"))
+    found = find_compiler(compiler or os.environ.get("CXX") or None)
     told = [*found.command, found.version, *options(width), processor(), source]
     key = hashlib.sha256("\0".join(told).encode()).hexdigest()[:32]
     kept = _own_folder(folder)

@@ -1,7 +1,7 @@
 """A function of one flight, compiled over lanes of flights. Depends on: compiler, control_flow, render; JAX.
 
-    program = lanes.compiled(function, shared, own)      # examples of the arguments of one flight
-    results = program(shared, own)                       # arrays of `own` with the flights last
+    program = Program(function, shared, own)  # examples of the arguments of one flight
+    results = program(shared, own)            # arrays of `own` with the flights last
 
 The function is traced by JAX, so that no equation is written twice, and it computes what `jax.vmap` of it would, to
 rounding. A loop inside it ends for each group of lanes by itself.
